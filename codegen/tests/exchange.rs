@@ -718,7 +718,7 @@ fn solids_that_are_shown_are_shapes() {
         visual("xyz='0.2 0 0'", "<sphere radius='0.3'/>"),
         visual("", "<cylinder radius='0' length='1'/>"),
     );
-    let mjcf = "<mujoco><worldbody><body name='arm'><joint axis='0 0 1'/><inertial pos='0 0 0' mass='2' diaginertia='1 1 1'/>\
+    let seen = "<mujoco><worldbody><body name='arm'><joint axis='0 0 1'/><inertial pos='0 0 0' mass='2' diaginertia='1 1 1'/>\
          <geom type='box' size='0.5 0.1 0.05' pos='0.5 0 0'/><geom type='cylinder' size='0.1' fromto='-0.3 0 0 0.3 0 0'/>\
          <body name='tool' pos='1 0 0' euler='0 0 90'><geom size='0.3' pos='0.2 0 0' mass='0'/><geom size='1' group='3' mass='0'/></body></body></worldbody></mujoco>";
     let expected = [
@@ -726,7 +726,7 @@ fn solids_that_are_shown_are_shapes() {
         (Form::Cylinder { diameter: 0.2, length: 0.6 }, [0.0; 3], [1.0, 0.0, 0.0]),
         (Form::Capsule { diameter: 0.6, length: 0.0 }, [1.0, 0.2, 0.0], [0.0, 0.0, 1.0]),
     ];
-    for (name, text) in [("r.urdf", urdf.as_str()), ("r.xml", mjcf)] {
+    for (name, text) in [("r.urdf", urdf.as_str()), ("r.xml", seen)] {
         let written = spec(name, text);
         let crane = chain(&SourceFile::new("robot", &written));
         let found: Vec<_> = crane.shapes.iter().map(|shape| shape.at(&crane, &[])).collect();
@@ -737,10 +737,12 @@ fn solids_that_are_shown_are_shapes() {
             assert!(off.iter().sum::<f64>() < 1e-15 * 8.0, "{name}: {frame:?}");
         }
         // And back: the same forms.
-        let again = spec("again.urdf", &exchange::urdf(&crane, &[], &[]).expect("an open chain"));
-        let again = chain(&SourceFile::new("again", again));
         let forms = |crane: &Chain| crane.shapes.iter().map(|shape| shape.at(crane, &[]).1).collect::<Vec<_>>();
-        assert_eq!(forms(&again), forms(&crane));
+        let urdf = exchange::urdf(&crane, &[], &[]).expect("an open chain");
+        for (name, text) in [("again.urdf", urdf), ("again.xml", mjcf(&crane).expect("an open chain"))] {
+            let again = chain(&SourceFile::new("again", spec(name, &text)));
+            assert_eq!(forms(&again), forms(&crane), "{name}");
+        }
     }
     let left_out = spec("r.urdf", &urdf);
     assert!(left_out.contains("shapes and colours: <material> (3), <visual> (2)."), "{left_out}");

@@ -55,6 +55,15 @@ fn each_implausible_spec_gives_its_warning() {
     }
 }
 
+/// A pad that is exact in one direction may hold the twist as stiffly as the other one.
+#[test]
+fn a_pad_that_is_exact_in_one_direction_may_hold_the_twist() {
+    let text = include_str!("implausible/W063_order_of_pads.yaml");
+    let free = text.replace("front: {stiffness: [2e7, 2e6, 2e7]}", "front: {exact: [z], stiffness: [2e7, 0, 2e7]}");
+    assert_ne!(free, text);
+    assert_eq!(codes(&warnings("free.yaml", &free)), Vec::<&str>::new());
+}
+
 #[test]
 fn mistakes_of_unit_are_noticed() {
     let spec = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/own-crane/crane.yaml"));

@@ -153,3 +153,25 @@ fn rotated<S: Scalar>(axis: &[S], rows: &[S]) -> impl Iterator<Item = S> {
     };
     (0..12).map(move |slot| entry(slot / 4, slot % 4))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `K_ij = ω_i · M + υ_i · F` for one force on two coordinates, and a number beside it.
+    #[test]
+    fn a_tangent_is_the_work_of_wrenches_along_axes() {
+        let shape = Shape::Tangent { n: 2, segments: vec![[1, 0, 2]], entries: vec![[0, 0]] };
+        // ω_0, ω_1, υ_0, υ_1, M and F, the number.
+        let slots = [
+            [1.0, 2.0, 3.0],
+            [4.0, 5.0, 6.0],
+            [7.0, 8.0, 9.0],
+            [10.0, 11.0, 12.0],
+            [1.0, 10.0, 100.0],
+            [2.0, 0.0, 1.0],
+        ];
+        let upper = shape.expand([slots.as_flattened(), &[0.5]].concat());
+        assert_eq!(upper, [0.5, 321.0 + 23.0, 654.0 + 32.0]);
+    }
+}

@@ -191,7 +191,7 @@ impl<F: Formula> Adaptive<'_, F> {
         self.motion.copy_from_slice(&self.step.end);
         self.equations.make_absolute(reached, &mut self.motion);
         let (q, v) = self.motion[..2 * n].split_at(n);
-        self.norm.note_rounding(q, v);
+        self.norm.note_state(self.equations.crane, reached, q, v);
         Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! The size of an error of a motion, in units of the tolerance.
 
-use super::equations::Equations;
+use super::{equations::Equations, references::References};
 use crate::memory::Visit;
 use crate::{
     CoordinateKind,
@@ -31,6 +31,8 @@ pub(super) struct Norm {
     /// Allowed error of a step, m and rad.
     tolerance: f64,
     efforts: Vec<Effort>,
+    /// Motions of all drives.
+    motions: Vec<[f64; 2]>,
     /// Scales of the states of forces.
     states: Vec<f64>,
 }
@@ -39,6 +41,8 @@ pub(super) struct Norm {
 #[derive(Clone, Copy, Debug)]
 struct Effort {
     coordinate: usize,
+    /// Its drive, if the integrated motion is not relative to that of the drive.
+    drive: Option<usize>,
     /// s and d.
     stiffness: f64,
     damping: f64,
@@ -65,7 +69,7 @@ pub struct EffortAccuracy {
 impl Norm {
     /// For coordinates and rates only.
     pub fn new(n: usize, tolerance: f64) -> Self {
-        Self { n, tolerance, efforts: Vec::new(), states: Vec::new() }
+        Self { n, tolerance, efforts: Vec::new(), motions: Vec::new(), states: Vec::new() }
     }
 
     /// For coordinates, rates and states of forces.
@@ -75,20 +79,22 @@ impl Norm {
     }
 
     /// Also for the drives' efforts, for a motion relative to the drives' motions.
-    pub fn with_efforts(crane: &dyn DynImplicit, tolerance: f64) -> Self {
+    pub fn with_efforts(crane: &dyn DynImplicit, references: &References, tolerance: f64) -> Self {
         let n = crane.size();
         let mut stiffness_and_damping = vec![[0.0; 2]; n];
         crane.joint_stiffness_and_damping(&mut stiffness_and_damping);
         // At the guess, drives with an effort limit are far from it.
         let stiffness = crane.drive_stiffness(&guess_dyn(crane));
-        let effort = |(coordinate, stiffness): (usize, f64)| {
+        let effort = |(drive, (coordinate, stiffness)): (usize, (usize, f64))| {
             let [_, damping] = stiffness_and_damping[coordinate];
-            Effort { coordinate, stiffness, damping, scale: 0.0, peak: 0.0, error: 0.0, rounding: 0.0 }
+            let drive = (!references.coordinates().any(|relative| relative == coordinate)).then_some(drive);
+            Effort { coordinate, drive, stiffness, damping, scale: 0.0, peak: 0.0, error: 0.0, rounding: 0.0 }
         };
         let coordinates = crane.description().drives.iter().map(|drive| drive.coordinate);
-        let drives = coordinates.zip(stiffness).map(effort);
+        let drives = coordinates.zip(stiffness).enumerate().map(effort);
         let drives = drives.filter(|effort| effort.stiffness > 0.0);
-        Self { efforts: drives.collect(), ..Self::with_states(crane, tolerance) }
+        let motions = vec![[0.0; 2]; crane.description().drives.len()];
+        Self { efforts: drives.collect(), motions, ..Self::with_states(crane, tolerance) }
     }
 
     /// Starts at a pose: the crane's weight there gives the scale of the efforts.
@@ -113,7 +119,7 @@ impl Norm {
             effort.scale = if least > 0.0 { least } else { effort.stiffness / UNKNOWN };
         }
         self.note(motion, &vec![0.0; motion.len()]);
-        self.note_rounding(&q, &v);
+        self.note_state(crane, t, &q, &v);
     }
 
     /// Size of an error of a motion: the largest of `|δq|` in m and rad, `|δv|/(1 + |v|)` times [`RATE`], and of states of forces
@@ -139,16 +145,27 @@ impl Norm {
     pub fn note(&mut self, motion: &[f64], error: &[f64]) {
         let n = self.n;
         for effort in &mut self.efforts {
-            effort.peak = effort.peak.max(effort.of(n, motion, |x| x).abs());
+            if effort.drive.is_none() {
+                effort.peak = effort.peak.max(effort.of(n, motion, |x| x).abs());
+            }
             effort.error = effort.error.max(effort.of(n, error, f64::abs));
             effort.scale = effort.scale.max(effort.peak);
         }
     }
 
-    /// Records the error of the efforts due to rounding of a pose and its rates, which shorter steps cannot reduce.
-    pub fn note_rounding(&mut self, q: &[f64], v: &[f64]) {
+    /// Records what follows from a pose and its rates at time t: the efforts where the motion is not relative to that of their drives, and the error of all
+    /// due to rounding, which shorter steps cannot reduce.
+    pub fn note_state(&mut self, crane: &dyn DynModel, t: f64, q: &[f64], v: &[f64]) {
+        if self.efforts.iter().any(|effort| effort.drive.is_some()) {
+            crane.drive_motions(t, &mut self.motions);
+        }
         for effort in &mut self.efforts {
-            let Effort { coordinate, stiffness, damping, .. } = *effort;
+            let Effort { coordinate, drive, stiffness, damping, .. } = *effort;
+            if let Some([position, rate]) = drive.map(|drive| self.motions[drive]) {
+                let value = stiffness * (q[coordinate] - position) + damping * (v[coordinate] - rate);
+                effort.peak = effort.peak.max(value.abs());
+                effort.scale = effort.scale.max(effort.peak);
+            }
             let rounding = ROUNDINGS * f64::EPSILON * (stiffness * q[coordinate].abs() + damping * v[coordinate].abs());
             effort.rounding = effort.rounding.max(rounding);
             effort.scale = effort.scale.max(MAGNIFIED * rounding / (EFFORT * self.tolerance));

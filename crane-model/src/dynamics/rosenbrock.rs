@@ -123,7 +123,7 @@ impl<'a> Rosenbrock<'a> {
     /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
         let equations = Equations::new(crane, References::of(crane));
-        let norm = Norm::with_efforts(crane, settings.tolerance);
+        let norm = Norm::with_efforts(crane, &equations.references, settings.tolerance);
         Self(Adaptive::new(Stages::new(crane, equations.len()), equations, norm))
     }
 }

@@ -54,7 +54,7 @@ impl Plausibility<'_> {
         let size = gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
         let [_, axis] = self.chain.axis(coordinate, &self.pose_at_start(), &self.values);
         let along: f64 = axis.iter().zip(gravity).map(|(a, g)| a * g).sum();
-        along.abs() > VERTICAL * size && size > 0.0
+        along.abs() > VERTICAL * size
     }
 
     /// The guess, with the drives where their motions begin.

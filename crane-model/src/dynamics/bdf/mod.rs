@@ -180,7 +180,7 @@ impl<'a> Bdf<'a> {
     /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
         let equations = Equations::new(crane, References::of(crane));
-        let norm = Norm::with_efforts(crane, SHARE * settings.tolerance);
+        let norm = Norm::with_efforts(crane, &equations.references, SHARE * settings.tolerance);
         let len = equations.len();
         let contraction = Contraction { ratio: 1.0, h: 1.0, age: Contraction::LIFETIME };
         Self {
@@ -232,7 +232,7 @@ impl<'a> Bdf<'a> {
         self.motion.copy_from_slice(&self.history.differences[0]);
         self.equations.make_absolute(self.history.t, &mut self.motion);
         let (q, v) = self.motion[..2 * n].split_at(n);
-        self.control.norm.note_rounding(q, v);
+        self.control.norm.note_state(self.crane, self.history.t, q, v);
     }
 
     /// Continues from the last state as if there was nothing before it.

@@ -19,7 +19,8 @@ use crate::{
 pub(super) fn motion_of(crane: &dyn DynImplicit, tolerance: f64) -> Adaptive<'_, Stages<'_>> {
     let equations = Equations::new(crane, References::of(crane));
     let stages = Stages::new(crane, equations.len());
-    Adaptive::new(stages, equations, Norm::with_efforts(crane, tolerance)).watching_all()
+    let norm = Norm::with_efforts(crane, &equations.references, tolerance);
+    Adaptive::new(stages, equations, norm).watching_all()
 }
 
 /// A motion integrated by the W-method, and its derivatives along directions.

@@ -6,7 +6,7 @@ use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::Settings;
-use crane_model::results::{CylinderState, cautions, cylinders_at};
+use crane_model::results::{CylinderState, Duties, cautions, cylinders_at};
 use crane_model::runs::{self, Start};
 use crane_model::statics;
 
@@ -101,6 +101,23 @@ fn a_run_has_the_power_of_its_drive_and_the_oil_of_its_volume() {
     assert!((delivered / volume - 1.0).abs() < 2e-3, "{delivered} m³ for {volume} m³");
     let lifted = 200.0 * GRAVITY * 2.0 * 0.6_f64.sin() + 2e5 * areas()[1] * (length[length.len() - 1] - length[0]);
     assert!((work / lifted - 1.0).abs() < 5e-3, "{work} J for {lifted} J");
+}
+
+/// With gravity upwards the cylinder pulls: a run's duty has the largest pull, and no push.
+#[test]
+fn a_cylinder_that_only_pulls_has_no_push() {
+    let crane = arm(&format!("{PLAIN}\ngravity: [0, 0, 9.81]"));
+    let settings = Settings { duration: 3.5, output: 0.01, ..Settings::of(crane.description()) };
+    let start = Start::of(&crane).expect("it stands");
+    let table =
+        runs::record(&crane, &start, &settings, &mut |_| std::ops::ControlFlow::Continue(())).expect("runs").table;
+    let least = table.values("lift_force").expect("a column").fold(0.0, f64::min);
+    let duty = &Duties::of(crane.description(), &table).cylinders[0];
+    assert_eq!([duty.push, duty.pull], [0.0, -least]);
+    // At the end, where the lever is shortest; stopping there adds some per cent.
+    let lever = at(&crane, &[0.0, -0.6], &[0.0; 2]).arm.abs();
+    let weight = 200.0 * GRAVITY * 2.0 * 0.6_f64.cos() / lever;
+    assert!((duty.pull / weight - 1.0).abs() < 0.15, "{}, {weight}", duty.pull);
 }
 
 /// A rocker as long as the arm's lever, and a link as long as the distance of its pivot from the joint form a parallelogram: the rocker

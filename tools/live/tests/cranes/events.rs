@@ -254,13 +254,40 @@ fn a_load_comes_off_at_a_height() {
     }
 }
 
+/// The largest effort of a run is that of all its phases: raised at 0.4 m/s, the spring carries m (g + v ω) before the load is dropped, and not half of it
+/// after.
+#[test]
+fn efforts_before_an_event_count() {
+    let lift = LIFT.replace("{hold: 0}", "{speed: {rate: 0.4}}");
+    let lift = crane(&format!("{lift}events: [{{name: drop, at: 505 ms, set: {{load: 90 kg}}}}]\n"));
+    let expected = 590.0 * (GRAVITY + 0.4 * (5e4_f64 / 590.0).sqrt());
+    let start = Start::of(&lift).expect("a start");
+    let mut known = 0;
+    for method in Method::ALL {
+        let settings = settings(&lift, method, 1.0);
+        let found = record(&lift, &start, &settings, &mut |_| ControlFlow::Continue(())).expect("a run");
+        for effort in &found.run.efforts {
+            // Steps end beside the peak.
+            assert!((effort.peak - expected).abs() < 1e-2 * expected, "{method:?}: {}, {expected}", effort.peak);
+            known += 1;
+        }
+    }
+    assert!(known > 0, "no method estimates the error of an effort");
+}
+
 /// A rigid drive goes 1 m up and down again within 4 s, over 0.5 m at 1 s and below it at 3 s.
 fn elevator(events: &str) -> LiveCrane {
+    elevator_within(4.0, events)
+}
+
+/// The same within another time, s.
+fn elevator_within(whole: f64, events: &str) -> LiveCrane {
+    let times = [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| part * whole);
     crane(&format!(
         "format: 1\nname: elevator\nparameters: {{load: {{value: 1000, unit: kg}}, hook: {{value: 5, unit: kg}}}}\n\
          links:\n- {{name: car, joint: {{prismatic: {{axis: z}}}}, mass: load, com: [0, 0, 0]}}\n\
          - {{name: hook, joint: fixed, mass: hook, com: [0, 0, 0]}}\n\
-         drives: [{{coordinate: car_z, rigid: true, motion: {{table: {{times: [0, 1, 2, 3, 4], values: [0, 0.5, 1, 0.5, 0]}}}}}}]\n\
+         drives: [{{coordinate: car_z, rigid: true, motion: {{table: {{times: {times:?}, values: [0, 0.5, 1, 0.5, 0]}}}}}}]\n\
          points: [{{name: floor, link: car}}]\nevents: [{events}]\n"
     ))
 }
@@ -282,6 +309,8 @@ fn conditions_hold_anew() {
         assert_eq!(planned, Some(3.5));
         assert!(near(up, 1.0) && near(down, 3.0) && lighter == down.map(f64::next_up), "{method:?}: {found:?}");
     }
+    let (found, _) = times(&elevator_within(1.0, up), Method::DormandPrince, 1.0);
+    assert!(found[0].is_some_and(|time| (time - 0.25).abs() < 1e-9), "{found:?}");
     let (found, cautions) = times(&elevator(down), Method::DormandPrince, 0.3);
     assert_eq!(found, [None]);
     assert_eq!(

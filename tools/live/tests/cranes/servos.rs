@@ -9,6 +9,7 @@ use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::modes::{UnstableServo, unstable_servos};
 use crane_model::results::cautions;
+use crane_model::runs::{Start, record_checked};
 
 const MASS: f64 = 800.0;
 const DAMPING: f64 = 2e3;
@@ -27,6 +28,10 @@ const STROKE: f64 = 0.6;
 
 /// A mass with a viscous guide, held on a cylinder along its path by a servo.
 fn lift(gain: f64) -> LiveCrane {
+    lift_moving(gain, "{hold: 0.1}")
+}
+
+fn lift_moving(gain: f64, motion: &str) -> LiveCrane {
     let text = format!(
         "format: 1
 name: lift
@@ -35,7 +40,7 @@ links:
   - {{name: slide, joint: {{prismatic: {{axis: z}}}}, mass: {MASS}, com: [0, 0, 0]}}
 drives:
   - {{coordinate: post_x, rigid: true, motion: {{hold: 0}}}}
-  - {{coordinate: slide_z, stiffness: 1e8, motion: {{hold: 0.1}}}}
+  - {{coordinate: slide_z, stiffness: 1e8, motion: {motion}}}
 friction:
   slide_z: {{coulomb: 0, viscous: {DAMPING}}}
 cylinders:
@@ -151,6 +156,21 @@ fn the_caution_names_the_servo_and_a_gain_that_is_stable() {
     let caution = cautions::of_servos(crane, 0.0, &rest.q).join("; ");
     assert!(caution.starts_with("servo of ram is unstable with slide at 26.5"), "{caution}");
     assert!(caution.contains("use a `gain` below 140 instead of 300 1/m"), "{caution}");
+}
+
+/// A run is as unstable as it ends: the oil is stiffest near an end of the stroke, where it begins.
+#[test]
+fn the_end_of_a_run_is_looked_at() {
+    let moved = lift_moving(160.0, "{table: {times: [0, 1], values: [-0.19, 0.1]}}");
+    let crane: &dyn DynCrane = &moved;
+    let settings = Settings { duration: 1.0, ..Settings::of(crane.description()) };
+    let start = Start::of(crane).expect("a start");
+    let at_start = crane.equilibrium(&crane_model::statics::Settings::default());
+    assert_eq!(unstable_servos(crane, 0.0, &at_start.q).expect("modes"), []);
+    let found =
+        record_checked(crane, &start, &settings, (true, 5.0), &mut |_| ControlFlow::Continue(())).expect("a run");
+    let caution = found.cautions.join("; ");
+    assert!(caution.contains("servo of ram is unstable"), "{caution}");
 }
 
 /// Oil leaks past the pistons of a crane with three servos: without them it sinks. This does not hide that two of them make it swing, with gains that are
