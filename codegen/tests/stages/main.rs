@@ -11,4 +11,5 @@ mod parameters;
 mod presets;
 mod sections;
 mod shipped_specs;
+mod table;
 mod units;
