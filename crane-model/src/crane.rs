@@ -78,22 +78,24 @@ impl dyn DynCrane + '_ {
         if loops.assemble(self, &mut q, &mut |q, r, x| self.solve_mass(q, r, x)).is_err() { open } else { q }
     }
 
-    /// Static equilibrium from the guess: [`statics::solve`]. If feet lift and no pose is
+    /// Static equilibrium from the guess: [`statics::Problem`]. If feet lift and no pose is
     /// stable, it names the supports over which the crane tips.
     pub fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium {
-        statics::with_tipped_status(self, 0.0, &self.guess(), statics::solve_dyn(self, settings))
+        statics::with_tipped_status(self, 0.0, &self.guess(), statics::Problem::of(self).settings(settings).solve())
     }
 
-    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::solve_at`], with the supports
+    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::Problem::at`], with the supports
     /// over which the crane tips, if it does.
     pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
-        statics::with_tipped_status(self, t, q, statics::solve_at_dyn(self, t, q, settings))
+        let found = statics::Problem::of(self).at(t).from(q).settings(settings).solve();
+        statics::with_tipped_status(self, t, q, found)
     }
 
-    /// Equilibrium with the drives at given positions, from pose `q`: [`statics::solve_holding_dyn`], with the supports over which the crane tips,
+    /// Equilibrium with the drives at given positions, from pose `q`: [`statics::Problem::holding`], with the supports over which the crane tips,
     /// if it does. [`statics::RestSearch`] needs no pose.
     pub fn equilibrium_holding(&self, positions: &[f64], q: &[f64], settings: &statics::Settings) -> Equilibrium {
-        statics::with_tipped_status(self, 0.0, q, statics::solve_holding_dyn(self, positions, q, settings))
+        let found = statics::Problem::of(self).holding(positions).from(q).settings(settings).solve();
+        statics::with_tipped_status(self, 0.0, q, found)
     }
 
     /// Coefficients of small motions about a pose at rest, with shut valves and joints that stick.

@@ -1,7 +1,7 @@
 //! Cranes of any size through one pointer: the traits of a generated crane on slices.
 //!
 //! Statics, integrators, modes and stability are implemented once, in terms of these traits. A trait here is the counterpart of
-//! a trait with the number of coordinates in its type; [`Instance`] adapts one to the other.
+//! a trait with the number of coordinates in its type; [`Instance`] adapts one to the other. Solvers take [both](AnyCrane).
 //!
 //! | here | counterpart | used by |
 //! |---|---|---|
@@ -23,11 +23,13 @@
 //! matrices are written in full. A method may panic if a slice has another length. Repeated calls do not allocate, because each
 //! method keeps its workspace.
 
+mod any;
 mod declare;
 mod instance;
 mod methods;
 mod quantities;
 
+pub use any::{AnyCrane, AnySize, CraneRef, OfSize};
 use crane_quantities::{Count, quantities};
 pub(crate) use instance::Block;
 pub use instance::{Crane, Instance, boxed};

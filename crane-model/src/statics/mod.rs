@@ -23,6 +23,6 @@ pub(crate) use overloaded::{REACHED, Reached, reached};
 pub use rest::RestSearch;
 pub(crate) use rest::advance;
 pub use settings::Settings;
-pub use solve::{solve, solve_at, solve_at_dyn, solve_dyn, solve_holding_dyn};
+pub use solve::Problem;
 pub use status::Status;
 pub(crate) use tipped::with_tipped_status;

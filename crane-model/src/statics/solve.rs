@@ -1,64 +1,95 @@
 //! Static equilibrium: Newton's method, and continuation if it fails.
 
-use nalgebra::{DVector, SVector};
+use nalgebra::DVector;
 
 use super::{
     Equilibrium, Iteration, Settings, Status, continuation, equations::Equations, guess_dyn, newton,
     residual_scale::ResidualScale, tangent::Tangent,
 };
 use crate::{
-    CoordinateKind, Statics,
-    dyn_crane::{DynStatics, Instance},
+    CoordinateKind,
+    dyn_crane::{AnyCrane, CraneRef, DynStatics},
     feet::Feet,
 };
 
-/// Solves `∂E_p/∂q = 0` at t = 0, Eq. (23) with `q̇ = q̈ = 0`, from [`super::guess()`].
+/// The search for an equilibrium of a crane: `∂E_p/∂q = 0`, Eq. (23) with `q̇ = q̈ = 0`.
 ///
-/// Newton–Raphson on `r(q) = ∂E_p/∂q` with `K = ∂²E_p/∂q²`: `q ← q − α K⁻¹ r`, α = 1, halved until the residual falls.
-/// The residual is measured as `‖r/scale‖`, the scale of a translation being the largest force that any translation
-/// balances at the guess, that of a rotation the largest moment: N and N m become comparable. Any equilibrium is found,
-/// stable or not; the tangent stiffness there decides which.
+/// This is the one entry of the solver, for cranes of a size in their type and of any size. Each part of the problem has a default:
 ///
-/// If that fails, or leads from a stable guess to an unstable pose, steps that hardly move in soft directions are tried; then the load is applied in steps, starting at the guess, and
-/// [`Equilibrium::load_steps`] is their number. Springs hold the crane at the guess and are removed as its load is applied:
-///
-/// ```text
-/// H(q, λ) = λ r(q) + (1 − λ) S (q − q₀) = 0,   λ from 0 to 1
-/// ```
-///
-/// This path does not end before λ = 1 if the potential energy grows with the distance from the guess, so that it reaches an equilibrium
-/// for almost every guess. It is followed by arclength, since λ may decrease along it. With loops it lies on φ(q) = 0, and H is restricted to
-/// the motions that leave them closed.
-/// S. N. Chow, J. Mallet-Paret, J. A. Yorke, Finding zeroes of maps, Math. Comp. 32 (1978) 887; H. B. Keller, Numerical
-/// solution of bifurcation and nonlinear eigenvalue problems, in Applications of Bifurcation Theory, Academic Press 1977.
-pub fn solve<const N: usize, C: Statics<N>>(crane: &C, settings: &Settings) -> Equilibrium {
-    solve_dyn(&Instance::<N, _>(crane), settings)
-}
-
-/// As [`solve`], for a crane of any size.
-pub fn solve_dyn(crane: &dyn DynStatics, settings: &Settings) -> Equilibrium {
-    search(&mut Equations::at(crane, 0.0), &guess_dyn(crane), settings)
-}
-
-/// As [`solve`], with the drives, loads and winches where they are at time `t`, s, and starting from the pose `q`: where the crane would
-/// rest if its motion stopped. This gives poses during a manoeuvre, each starting from the previous one.
-pub fn solve_at<const N: usize, C: Statics<N>>(
-    crane: &C,
+/// | part | default |
+/// |---|---|
+/// | [`at`](Self::at): time of drives, loads and winches | t = 0 |
+/// | [`holding`](Self::holding): positions of the drives | those of their motions |
+/// | [`from`](Self::from): pose at which the search starts | [`super::guess()`] |
+/// | [`settings`](Self::settings): when it stops | [`Settings::default`] |
+#[must_use = "it is solved by `solve`"]
+pub struct Problem<'a> {
+    crane: CraneRef<'a, dyn DynStatics + 'a>,
     t: f64,
-    q: SVector<f64, N>,
-    settings: &Settings,
-) -> Equilibrium {
-    solve_at_dyn(&Instance::<N, _>(crane), t, q.as_slice(), settings)
+    positions: Option<&'a [f64]>,
+    from: Option<&'a [f64]>,
+    settings: Settings,
 }
 
-/// As [`solve_at`], for a crane of any size.
-pub fn solve_at_dyn(crane: &dyn DynStatics, t: f64, q: &[f64], settings: &Settings) -> Equilibrium {
-    search(&mut Equations::at(crane, t), q, settings)
-}
+impl<'a> Problem<'a> {
+    /// The crane with its drives, loads and winches where they are at t = 0.
+    pub fn of<Size>(crane: impl AnyCrane<'a, dyn DynStatics + 'a, Size>) -> Self {
+        Self { crane: crane.on_slices(), t: 0.0, positions: None, from: None, settings: Settings::default() }
+    }
 
-/// As [`solve_at_dyn`] at t = 0, with the drives at given positions, one per drive, instead of those of their motions.
-pub fn solve_holding_dyn(crane: &dyn DynStatics, positions: &[f64], q: &[f64], settings: &Settings) -> Equilibrium {
-    search(&mut Equations::holding(crane, 0.0, positions), q, settings)
+    /// With the drives, loads and winches where they are at time `t`, s: where the crane would rest if its motion stopped.
+    pub fn at(self, t: f64) -> Self {
+        Self { t, ..self }
+    }
+
+    /// With the drives at these positions, one per drive, m and rad, instead of those of their motions.
+    pub fn holding(self, positions: &'a [f64]) -> Self {
+        Self { positions: Some(positions), ..self }
+    }
+
+    /// Starting from the pose `q`, m and rad. For poses during a manoeuvre, start each from the previous one.
+    pub fn from(self, q: &'a [f64]) -> Self {
+        Self { from: Some(q), ..self }
+    }
+
+    /// With these settings.
+    pub fn settings(self, settings: &Settings) -> Self {
+        Self { settings: *settings, ..self }
+    }
+
+    /// Solves it.
+    ///
+    /// Newton–Raphson on `r(q) = ∂E_p/∂q` with `K = ∂²E_p/∂q²`: `q ← q − α K⁻¹ r`, α = 1, halved until the residual falls.
+    /// The residual is measured as `‖r/scale‖`, the scale of a translation being the largest force that any translation
+    /// balances at the guess, that of a rotation the largest moment: N and N m become comparable. Any equilibrium is found,
+    /// stable or not; the tangent stiffness there decides which.
+    ///
+    /// If that fails, or leads from a stable guess to an unstable pose, steps that hardly move in soft directions are tried; then the load is applied in steps, starting at the guess, and
+    /// [`Equilibrium::load_steps`] is their number. Springs hold the crane at the guess and are removed as its load is applied:
+    ///
+    /// ```text
+    /// H(q, λ) = λ r(q) + (1 − λ) S (q − q₀) = 0,   λ from 0 to 1
+    /// ```
+    ///
+    /// This path does not end before λ = 1 if the potential energy grows with the distance from the guess, so that it reaches an equilibrium
+    /// for almost every guess. It is followed by arclength, since λ may decrease along it. With loops it lies on φ(q) = 0, and H is restricted to
+    /// the motions that leave them closed.
+    /// S. N. Chow, J. Mallet-Paret, J. A. Yorke, Finding zeroes of maps, Math. Comp. 32 (1978) 887; H. B. Keller, Numerical
+    /// solution of bifurcation and nonlinear eigenvalue problems, in Applications of Bifurcation Theory, Academic Press 1977.
+    ///
+    /// # Panics
+    /// If the pose or the positions are not as many numbers as the crane has coordinates or drives.
+    pub fn solve(&self) -> Equilibrium {
+        let crane = &*self.crane;
+        let mut equations = match self.positions {
+            Some(positions) => Equations::holding(crane, self.t, positions),
+            None => Equations::at(crane, self.t),
+        };
+        match self.from {
+            Some(q) => search(&mut equations, q, &self.settings),
+            None => search(&mut equations, &guess_dyn(crane), &self.settings),
+        }
+    }
 }
 
 /// The solution from the pose `q`, with the exact positions of rigid drives: the steps change them only by rounding.

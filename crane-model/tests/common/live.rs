@@ -22,7 +22,7 @@ impl<const N: usize> Live<N> {
 
     /// The stable equilibrium.
     pub fn equilibrium(&self) -> SVector<f64, N> {
-        let equilibrium = statics::solve_dyn(&self.0, &statics::Settings::default());
+        let equilibrium = statics::Problem::of(&self.0).solve();
         assert!(equilibrium.is_stable(), "{}", equilibrium.status);
         SVector::from_column_slice(&equilibrium.q)
     }

@@ -13,7 +13,7 @@ fn knuckle_booms(count: u32) -> Vec<(knuckle_boom::Crane, State<{ knuckle_boom::
     let crane = |index| {
         let crane = knuckle_boom::Crane::new(knuckle_boom::Params { payload: 100.0 * f64::from(index) })
             .expect("a payload not below zero");
-        let q = statics::solve(&crane, &statics::Settings::default()).q;
+        let q = statics::Problem::of(&crane).solve().q;
         (crane, State::at_rest(SVector::from_column_slice(&q)))
     };
     (0..count).map(crane).collect()
@@ -75,7 +75,7 @@ fn eight_lanes_are_eight_single_runs() {
         let load_mass = 100.0 * lane as f64;
         let crane =
             eight_link_flexible::Crane::new(eight_link_flexible::Params { load_mass }).expect("a load not below zero");
-        let q = statics::solve(&crane, &statics::Settings::default()).q;
+        let q = statics::Problem::of(&crane).solve().q;
         (crane, State::at_rest(SVector::from_column_slice(&q)))
     };
     lanes_are_single_cranes(std::array::from_fn(flexible), 1e-4, 20);

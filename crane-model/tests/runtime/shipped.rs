@@ -62,7 +62,7 @@ fn every_spec_asks_for_a_stable_step() {
 fn steps_of_the_reference_crane_allocate_nothing() {
     use cranes::eight_link_flexible::{Crane, N};
     let crane = Crane::default();
-    let equilibrium = statics::solve(&crane, &statics::Settings::default());
+    let equilibrium = statics::Problem::of(&crane).solve();
     let start = rk4::State::at_rest(SVector::<f64, N>::from_column_slice(&equilibrium.q));
     let description = CraneModel::<N>::description(&crane);
     for method in Method::ALL {

@@ -66,12 +66,11 @@ fn predicted_limits_of_all_shipped_cranes_are_observed() {
     macro_rules! check {
         ($($name:ident),*) => {$({
             let crane = cranes::$name::Crane::default();
-            let settings = statics::Settings::default();
             let vector = |q: &[f64]| SVector::<f64, { cranes::$name::N }>::from_column_slice(q);
-            let start = vector(&statics::solve(&crane, &settings).q);
+            let start = statics::Problem::of(&crane).solve().q;
             // At the end the drives stand still; at t = 0 some already move.
             let t = cranes::$name::DESCRIPTION.duration;
-            let end = statics::solve_at(&crane, t, start, &settings);
+            let end = statics::Problem::of(&crane).at(t).from(&start).solve();
             assert!(end.is_stable(), "{}", end.status);
             agree(stringify!($name), &crane, t, &vector(&end.q));
             seen += 1;
@@ -158,7 +157,7 @@ fn the_derivative_is_that_of_the_function() {
 fn the_limit_of_the_reference_crane_in_plain_words() {
     use crane_shipped::eight_link_flexible::{Crane, DESCRIPTION, N};
     let crane = Crane::default();
-    let q = statics::solve(&crane, &statics::Settings::default()).q;
+    let q = statics::Problem::of(&crane).solve().q;
     let q = SVector::<f64, N>::from_column_slice(&q);
     let modes = damped(&SmallMotions::from(&crane.linearise(&q))).expect("modes");
     let limit = limit(&modes, &Method::Rk4.stability()).expect("a limit");

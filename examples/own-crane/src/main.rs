@@ -15,7 +15,7 @@ mod own_crane {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let crane = Crane::new(Params { payload: 500.0 })?;
-    let rest = statics::solve(&crane, &statics::Settings::default());
+    let rest = statics::Problem::of(&crane).solve();
     println!("{}, {} Newton steps", rest.status, rest.steps());
 
     let start = dynamics::rk4::State::at_rest(SVector::from_column_slice(&rest.q));

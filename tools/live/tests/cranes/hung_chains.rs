@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::statics::{Settings, Status, solve_dyn};
+use crane_model::statics::{Problem, Status};
 
 const LENGTH: f64 = 12.0;
 
@@ -43,7 +43,7 @@ fn chain(bars: usize) -> LiveCrane {
 fn a_chain_between_two_points_is_stable() {
     for bars in [6, 12, 24, 48, 96] {
         let crane = chain(bars);
-        let equilibrium = solve_dyn(&crane, &Settings::default());
+        let equilibrium = Problem::of(&crane).solve();
         assert_eq!(equilibrium.status, Status::Converged, "{bars} bars: {} steps", equilibrium.steps());
         let mut angle = 0.0;
         let slopes: Vec<f64> = equilibrium

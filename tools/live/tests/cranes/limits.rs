@@ -122,7 +122,7 @@ fn drives_hold_other_positions_within_their_limit() {
          drives: [{{coordinate: arm_theta, stiffness: {stiffness}, max_effort: {limit}, motion: {{hold: 0}}}}]\n"
     ));
     for position in [-0.9, 0.6, 1.2] {
-        let found = statics::solve_holding_dyn(&arm, &[position], &[position], &statics::Settings::default());
+        let found = statics::Problem::of(&arm).holding(&[position]).from(&[position]).solve();
         assert!(found.is_stable(), "{position}: {found}");
         let expected = position + 98.1 * found.q[0].cos() / stiffness;
         assert!((found.q[0] - expected).abs() < 1e-14, "{position}: {} for {expected}", found.q[0]);
