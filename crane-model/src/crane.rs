@@ -106,7 +106,7 @@ impl dyn DynCrane + '_ {
         motions.with_closed_loops(self, 0.0, q)
     }
 
-    /// A run: [`dynamics::simulate`], with the events of the crane.
+    /// A run: [`dynamics::Simulation`], with the events of the crane.
     ///
     /// # Errors
     /// [`Stopped`] if the run ends early.
@@ -116,7 +116,7 @@ impl dyn DynCrane + '_ {
         settings: &dynamics::Settings,
         observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
     ) -> Result<Run, Stopped> {
-        dynamics::simulate_events(self, start, settings, &mut dynamics::Samples(observe), &QUANTITIES)
+        dynamics::Simulation::with_events(self, &QUANTITIES, start, settings).observe(observe)
     }
 
     /// Runs of cranes that differ in their parameters, several at a time: [`dynamics::ensemble::simulate`].

@@ -6,8 +6,8 @@
 //! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Implicit`], [`Ensemble`], [`Statics`], [`Linearise`], [`InternalForces`], [`TransformDerivatives`], [`MotionDerivatives`] | nothing |
 //! | one step in time | [`dynamics::rk4`] | nothing |
 //! | adaptive steps, explicit and implicit | `dynamics::dormand_prince`, `dynamics::rosenbrock` | `std` |
-//! | equilibrium | `statics` | `std` |
-//! | a run with recorded results | `dynamics::simulate` | `std` |
+//! | equilibrium | `statics::Problem` | `std` |
+//! | a run with recorded results | `dynamics::Simulation` | `std` |
 //! | runs of many cranes, eight at a time | `dynamics::ensemble` | `std` |
 //! | complete runs: from rest, recorded, verified; ensembles on threads | `runs` | `std` |
 //! | frequencies, damping | `modes` | `std` |

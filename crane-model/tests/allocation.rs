@@ -2,10 +2,8 @@
 
 mod common;
 
-use std::ops::ControlFlow;
-
 use common::{DoublePendulum, Lift};
-use crane_model::dynamics::{Method, Settings, rk4, simulate};
+use crane_model::dynamics::{Method, Settings, Simulation, rk4};
 use nalgebra::{Vector1, Vector2};
 
 #[test]
@@ -28,7 +26,7 @@ fn steps_of_every_method_allocate_nothing() {
         let [short, long] = [1.0, 10.0].map(|duration| {
             let settings = Settings { method, duration, audit: true, ..Settings::of(lift.description) };
             let start = rk4::State::at_rest(Vector1::new(lift.sag()));
-            let run = || simulate(&lift, start, &settings, |_| ControlFlow::Continue(())).expect("a stable run");
+            let run = || Simulation::of(&lift, start, &settings).run().expect("a stable run");
             allocation_counter::measure(|| _ = run()).count_total
         });
         assert_eq!(short, long, "{method}");

@@ -9,7 +9,6 @@ use super::{
     events::{after, jump, rates_after, refused, stopped, timed},
     integration::{Advanced, Happens},
     settings::divided,
-    simulation::simulate_watched,
 };
 use crate::memory::{Visit, visit_count, visit_numbers};
 use crate::{ConditionInfo, dyn_crane::DynCrane};
@@ -155,7 +154,8 @@ pub enum Progress {
 #[derive(Clone)]
 pub struct Course {
     settings: Settings,
-    /// The end of the run, s.
+    /// Beginning and end of the run, s.
+    from: f64,
     end: f64,
     done: Done,
     /// The beginning of the present phase, s, and the state there.
@@ -188,6 +188,7 @@ impl Course {
         let timed = in_order(timed(crane.description()).filter(|(time, _)| *time > begin && *time <= end));
         Self {
             settings: *settings,
+            from: begin,
             end,
             done: Done::default(),
             begin,
@@ -416,7 +417,7 @@ impl Course {
         self.enter(present, integration)?;
         let intervals = divided(self.settings.duration, self.settings.output).0;
         while self.next <= intervals {
-            let result = (self.settings.output * self.next as f64).min(self.end);
+            let result = (self.from + self.settings.output * self.next as f64).min(self.end);
             match self.advance(present, integration, result, &mut |t| observe.step(t))? {
                 Progress::Event(happening) => return Ok(Some(happening)),
                 Progress::Stopped => break,
@@ -462,24 +463,16 @@ impl<S: Stepper + ?Sized> Observe<S> for Samples<'_> {
     }
 }
 
-/// Like [`simulate_watched`], with the events of the crane; `quantities`: the results to which conditions refer. A result at the time of an event is that after it.
-///
-/// # Errors
-/// As [`simulate`](super::simulate); the parameters that an event sets break a rule of the spec language.
-///
-/// # Panics
-/// If the start does not have as many numbers as the crane has coordinates.
-pub fn simulate_events(
+/// Runs a crane from event to event.
+pub(super) fn follow_events(
     crane: &dyn DynCrane,
+    begin: f64,
     start: &InitialState,
     settings: &Settings,
     watch: &mut dyn Watch,
     quantities: &Quantities,
 ) -> Result<Run, Stopped> {
-    if crane.description().events.is_empty() {
-        return simulate_watched(crane, start, settings, watch);
-    }
-    let mut course = Course::new(crane, 0.0, start, settings, quantities);
+    let mut course = Course::new(crane, begin, start, settings, quantities);
     let mut changed = None::<Box<dyn DynCrane>>;
     loop {
         let present = changed.as_deref().unwrap_or(crane);

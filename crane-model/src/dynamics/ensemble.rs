@@ -9,11 +9,10 @@ use std::{convert::Infallible, ops::ControlFlow};
 use nalgebra::SVector;
 
 use super::{
-    Cause, EffortAccuracy, InitialState, Method, Run, Sample, Settings, State, Statistics, Stopped, Watch,
+    Cause, EffortAccuracy, InitialState, Method, Run, Sample, Settings, Simulation, State, Statistics, Stopped, Watch,
     integration::close,
     rk4,
     settings::divided,
-    simulate_watched,
     stopped::{StepContext, check_inertia},
     stops::Stops,
 };
@@ -74,7 +73,7 @@ pub fn step<const N: usize, L: LaneDynamics<N>>(cranes: &L, t: f64, h: f64, stat
 }
 
 /// Integrates Eq. (23) of every crane from its state at t = 0, eight at a time, and passes `observe` its index in `cranes` and
-/// a sample at t = 0, at every interval and at the end, like [`simulate`](super::simulate) with RK4 and without audit.
+/// a sample at t = 0, at every interval and at the end, like a [`Simulation`] with RK4 and without audit.
 ///
 /// A crane that leaves the bound of the settings ends with [`Stopped`], and the others continue. Returns one result per crane.
 pub fn simulate<const N: usize, C: Ensemble<N>>(
@@ -152,7 +151,7 @@ pub(crate) fn simulate_fleet(
         (0..count * of_lane(0).len()).map(|place| of_lane(place % count)[place / count]).collect()
     };
     let start = InitialState { q: joined(|start| &start.q), v: joined(|start| &start.v), x: joined(|start| &start.x) };
-    let run = simulate_watched(fleet, &start, settings, watch)?;
+    let run = Simulation::of(fleet, start, settings).watch(watch)?;
     let of_lane = |lane: usize| {
         let own = run.efforts.iter().filter(|effort| effort.coordinate % count == lane);
         let efforts = own.map(|effort| EffortAccuracy { coordinate: effort.coordinate / count, ..*effort }).collect();

@@ -64,13 +64,15 @@ mod switches;
 mod system;
 #[cfg(feature = "std")]
 mod typed;
+#[cfg(feature = "std")]
+mod watch;
 
 #[cfg(feature = "std")]
 pub use constant::Rk4;
 #[cfg(feature = "std")]
 pub use contacts::Contacts;
 #[cfg(feature = "std")]
-pub use course::{Course, Happening, Progress, simulate_events};
+pub use course::{Course, Happening, Progress};
 #[cfg(feature = "std")]
 pub use events::{Phases, Quantities, ResultsAt, after as crane_after, event_times, without_events};
 #[cfg(feature = "std")]
@@ -84,9 +86,7 @@ pub use run::{Run, Sample};
 #[cfg(feature = "std")]
 pub use settings::Settings;
 #[cfg(feature = "std")]
-pub(crate) use simulation::Samples;
-#[cfg(feature = "std")]
-pub use simulation::{Watch, run, simulate, simulate_dyn, simulate_from, simulate_watched};
+pub use simulation::Simulation;
 #[cfg(feature = "std")]
 pub use state::InitialState;
 pub use state::{NotFinite, State, acceleration};
@@ -98,3 +98,5 @@ pub use stepper::{Ahead, Steered, Stepper};
 pub use stopped::{Cause, Stopped};
 #[cfg(feature = "std")]
 pub use stops::next_stop;
+#[cfg(feature = "std")]
+pub use watch::Watch;

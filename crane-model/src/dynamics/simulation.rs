@@ -2,116 +2,111 @@
 
 use std::ops::ControlFlow;
 
-use super::{InitialState, Integration, Run, Sample, Settings, State, Stepper, Stopped, settings::divided};
-use crate::{
-    Implicit,
-    dyn_crane::{DynDynamics, DynImplicit, Instance},
+use super::{
+    InitialState, Integration, Quantities, Run, Sample, Settings, Stepper, Stopped, Watch, course::follow_events,
+    settings::divided, watch::Samples,
 };
+use crate::dyn_crane::{AnyCrane, CraneRef, DynCrane, DynDynamics, DynImplicit};
 
-/// Integrates Eq. (23) from `start` at t = 0 and passes `observe` a sample at t = 0, at every interval and at the end.
-/// `observe` may stop the run.
+/// A run: the integration of Eq. (23) from a start.
 ///
-/// With `audit`, the work W of drives and loads and the dissipated energy D are integrated along with the motion:
+/// This is the one entry of the solver, for cranes of a size in their type and of any size. A run begins at t = 0, unless [`at`](Self::at) says
+/// otherwise. [`run`](Self::run) runs it, [`observe`](Self::observe) and [`watch`](Self::watch) do so with an observer.
+///
+/// With `audit` in the settings, the work W of drives and loads and the dissipated energy D are integrated along with the motion:
 /// `E(t) − E(0) − W + D`, which is zero for the exact motion, measures the error of the run.
-///
-/// # Errors
-/// [`Stopped`] if the motion grows from step to step or beyond the bound, if no step meets the tolerance, if there are too many
-/// steps, or if the mass matrix is not positive definite.
-pub fn simulate<const N: usize, C: Implicit<N>>(
-    crane: &C,
-    start: State<N>,
-    settings: &Settings,
-    mut observe: impl FnMut(&Sample<'_>) -> ControlFlow<()>,
-) -> Result<Run, Stopped> {
-    simulate_dyn(&Instance::<N, _>(crane), &InitialState::from(&start), settings, &mut observe)
-}
-
-/// An observer of a run, which may stop it.
-pub trait Watch {
-    /// Receives a sample: at the beginning, at every interval of results, and at the end.
-    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()>;
-
-    /// Receives the time after every step, s.
-    fn step(&mut self, _t: f64) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-}
-
-/// Passes samples to a function.
-pub(crate) struct Samples<'a>(pub(crate) &'a mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>);
-
-impl Watch for Samples<'_> {
-    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
-        (self.0)(sample)
-    }
-}
-
-/// Like [`simulate`], for a crane of any size.
-///
-/// # Errors
-/// As [`simulate`].
-///
-/// # Panics
-/// If the start does not have as many numbers as the crane has coordinates.
-pub fn simulate_dyn(
-    crane: &dyn DynImplicit,
-    start: &InitialState,
-    settings: &Settings,
-    observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
-) -> Result<Run, Stopped> {
-    simulate_watched(crane, start, settings, &mut Samples(observe))
-}
-
-/// Like [`simulate_dyn`], but also observed after every step.
-///
-/// # Errors
-/// As [`simulate`].
-///
-/// # Panics
-/// If the start does not have as many numbers as the crane has coordinates.
-pub fn simulate_watched(
-    crane: &dyn DynImplicit,
-    start: &InitialState,
-    settings: &Settings,
-    watch: &mut dyn Watch,
-) -> Result<Run, Stopped> {
-    simulate_from(crane, 0.0, start, settings, watch)
-}
-
-/// Like [`simulate_watched`], from time `begin`, s, over the settings' duration: the drives' motions continue from there. A run in
-/// pieces is reproduced exactly if it is divided into the same pieces.
-///
-/// # Errors
-/// As [`simulate`].
-///
-/// # Panics
-/// If the start does not have as many numbers as the crane has coordinates.
-pub fn simulate_from(
-    crane: &dyn DynImplicit,
+#[must_use = "it is run by `run`, `observe` or `watch`"]
+pub struct Simulation<'a> {
+    way: Way<'a>,
     begin: f64,
-    start: &InitialState,
-    settings: &Settings,
-    watch: &mut dyn Watch,
-) -> Result<Run, Stopped> {
-    follow(Integration::new(crane, begin, start, settings)?, begin, settings, watch)
+    start: InitialState,
+    settings: &'a Settings,
 }
 
-/// Like [`simulate_dyn`], with a stepper made for this crane and these settings: explicit ones only require [`DynDynamics`].
-///
-/// # Errors
-/// As [`simulate`].
-///
+/// What moves the crane.
+enum Way<'a> {
+    /// The method of the settings.
+    Method(CraneRef<'a, dyn DynImplicit + 'a>),
+    /// The same, from event to event.
+    Events(&'a dyn DynCrane, &'a Quantities),
+    /// A given stepper.
+    Stepper(&'a mut dyn Stepper, CraneRef<'a, dyn DynDynamics + 'a>),
+}
+
 /// # Panics
-/// If the start does not have as many numbers as the crane has coordinates.
-pub fn run(
-    crane: &dyn DynDynamics,
-    stepper: &mut dyn Stepper,
-    start: &InitialState,
-    settings: &Settings,
-    observe: &mut dyn FnMut(&Sample<'_>) -> ControlFlow<()>,
-) -> Result<Run, Stopped> {
-    let integration = Integration::by(Box::new(stepper), crane, 0.0, start, settings)?;
-    follow(integration, 0.0, settings, &mut Samples(observe))
+/// Methods that run it do so if the start does not have as many numbers as the crane has coordinates.
+impl<'a> Simulation<'a> {
+    /// A run of a crane by the method of the settings. Its events do not happen.
+    pub fn of<Size>(
+        crane: impl AnyCrane<'a, dyn DynImplicit + 'a, Size>,
+        start: impl Into<InitialState>,
+        settings: &'a Settings,
+    ) -> Self {
+        Self { way: Way::Method(crane.on_slices()), begin: 0.0, start: start.into(), settings }
+    }
+
+    /// The same with the events of the crane; `quantities`: the results to which conditions refer. A result at the time of an event is that after
+    /// it. Events before the start do not happen.
+    pub fn with_events(
+        crane: &'a dyn DynCrane,
+        quantities: &'a Quantities,
+        start: impl Into<InitialState>,
+        settings: &'a Settings,
+    ) -> Self {
+        Self { way: Way::Events(crane, quantities), begin: 0.0, start: start.into(), settings }
+    }
+
+    /// A run with a stepper made for this crane and these settings: explicit ones only require [`DynDynamics`].
+    pub fn by<Size>(
+        stepper: &'a mut dyn Stepper,
+        crane: impl AnyCrane<'a, dyn DynDynamics + 'a, Size>,
+        start: impl Into<InitialState>,
+        settings: &'a Settings,
+    ) -> Self {
+        Self { way: Way::Stepper(stepper, crane.on_slices()), begin: 0.0, start: start.into(), settings }
+    }
+
+    /// From time `t`, s, over the settings' duration: the drives' motions continue from there. A run in pieces is reproduced exactly if it is
+    /// divided into the same pieces.
+    pub fn at(self, t: f64) -> Self {
+        Self { begin: t, ..self }
+    }
+
+    /// Runs it.
+    ///
+    /// # Errors
+    /// [`Stopped`] if the motion grows from step to step or beyond the bound, if no step meets the tolerance, if there are too many
+    /// steps, if the mass matrix is not positive definite, or if the parameters that an event sets break a rule of the spec language.
+    pub fn run(self) -> Result<Run, Stopped> {
+        self.observe(|_| ControlFlow::Continue(()))
+    }
+
+    /// Runs it, and passes `observe` a sample at the beginning, at every interval and at the end. It may stop the run.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn observe(self, observe: impl FnMut(&Sample<'_>) -> ControlFlow<()>) -> Result<Run, Stopped> {
+        self.watch(&mut Samples(observe))
+    }
+
+    /// Runs it, and passes `watch` these samples, and the time after every step. It may stop the run.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn watch(self, watch: &mut dyn Watch) -> Result<Run, Stopped> {
+        let Self { way, begin, start, settings } = self;
+        match way {
+            Way::Events(crane, quantities) if !crane.description().events.is_empty() => {
+                follow_events(crane, begin, &start, settings, watch, quantities)
+            }
+            Way::Events(crane, _) => follow(Integration::new(crane, begin, &start, settings)?, begin, settings, watch),
+            Way::Method(crane) => follow(Integration::new(&*crane, begin, &start, settings)?, begin, settings, watch),
+            Way::Stepper(stepper, crane) => {
+                let integration = Integration::by(Box::new(stepper), &*crane, begin, &start, settings)?;
+                follow(integration, begin, settings, watch)
+            }
+        }
+    }
 }
 
 /// Follows a motion to the end of its run, from result to result.

@@ -72,6 +72,20 @@ impl InitialState {
 }
 
 #[cfg(feature = "std")]
+impl<const N: usize> From<State<N>> for InitialState {
+    fn from(state: State<N>) -> Self {
+        Self::from(&state)
+    }
+}
+
+#[cfg(feature = "std")]
+impl From<&Self> for InitialState {
+    fn from(state: &Self) -> Self {
+        state.clone()
+    }
+}
+
+#[cfg(feature = "std")]
 impl<const N: usize> From<&State<N>> for InitialState {
     fn from(state: &State<N>) -> Self {
         Self { q: state.q.as_slice().to_vec(), v: state.v.as_slice().to_vec(), x: Vec::new() }

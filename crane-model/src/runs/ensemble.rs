@@ -14,7 +14,7 @@ use super::{self as runs, Failed, Start};
 use crate::{
     ParameterError,
     dyn_crane::{DynCrane, DynModel},
-    dynamics::{self, InitialState, Run, Sample, Settings, Watch, ensemble::Member},
+    dynamics::{self, InitialState, Run, Sample, Settings, Simulation, Watch, ensemble::Member},
     interleaved,
     results::{self, FleetRecording, Peaks, Recording, Table, cautions},
 };
@@ -317,7 +317,7 @@ fn alone(crane: &dyn DynCrane, row: &Case, settings: &Settings, off: &dyn Fn() -
 /// Runs a crane from its start.
 fn alone_from(crane: &dyn DynCrane, start: &Start, settings: &Settings, off: &dyn Fn() -> bool) -> Outcome {
     let mut gathering = Gathering::new(crane, off);
-    let run = dynamics::simulate_events(crane, &start.state(), settings, &mut gathering, &results::QUANTITIES);
+    let run = Simulation::with_events(crane, &results::QUANTITIES, start.state(), settings).watch(&mut gathering);
     gathering.finish(run)
 }
 

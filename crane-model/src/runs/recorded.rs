@@ -109,7 +109,7 @@ pub fn record(
 ) -> Result<Recorded, Failed> {
     record_by(crane, start, settings, |recording| {
         let mut recorder = Recorder { recording, proceed };
-        dynamics::simulate_events(crane, &start.state(), settings, &mut recorder, &results::QUANTITIES)
+        dynamics::Simulation::with_events(crane, &results::QUANTITIES, start.state(), settings).watch(&mut recorder)
     })
 }
 

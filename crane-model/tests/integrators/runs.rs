@@ -7,12 +7,33 @@ use std::{
 
 use crane_model::{
     CraneModel, Description, Dynamics, Implicit, ParameterError,
-    dynamics::{Cause, Method, Settings, rk4::State, simulate},
+    dyn_crane::Instance,
+    dynamics::{Cause, InitialState, Method, Rk4, Settings, Simulation, rk4::State},
 };
 use nalgebra::{Matrix4, SMatrix, SVector, Vector1, Vector2};
 
 use crate::common::{self, DoublePendulum, GRAVITY, Lift};
 use crate::{implicit, state_after_a_second, stiff_lift, swinging};
+
+/// However a crane and the method are given, a run has the same bits.
+#[test]
+fn runs_of_one_crane_are_equal() {
+    let (lift, _) = swinging(0.1);
+    let settings = Settings { method: Method::Rk4, duration: 0.5, ..Settings::of(lift.description()) };
+    let start = InitialState::at_rest(vec![lift.sag() + 0.1]);
+    let end = |run: Simulation<'_>| {
+        let mut end = [0.0; 2];
+        let run = run.observe(|sample| {
+            end = [sample.q[0], sample.v[0]];
+            ControlFlow::Continue(())
+        });
+        (run.expect("a run").statistics.steps, end.map(f64::to_bits))
+    };
+    let on_slices = Instance::<1, _>(&lift);
+    let typed = end(Simulation::of(&lift, &start, &settings));
+    assert_eq!(end(Simulation::of(&on_slices, &start, &settings)), typed);
+    assert_eq!(end(Simulation::by(&mut Rk4::new(&on_slices, &settings), &lift, &start, &settings)), typed);
+}
 
 #[test]
 fn unresolved_undamped_modes_do_not_grow_in_adaptive_runs() {
@@ -26,11 +47,12 @@ fn unresolved_undamped_modes_do_not_grow_in_adaptive_runs() {
     };
     let mut most = 0.0_f64;
     let start = State::at_rest(Vector1::new(lift.sag() + 1e-3));
-    let run = simulate(&lift, start, &settings, |sample| {
-        most = most.max((sample.q[0] - lift.sag()).abs());
-        ControlFlow::Continue(())
-    })
-    .expect("a run");
+    let run = Simulation::of(&lift, start, &settings)
+        .observe(|sample| {
+            most = most.max((sample.q[0] - lift.sag()).abs());
+            ControlFlow::Continue(())
+        })
+        .expect("a run");
     // Growth is detected when it reaches the tolerance of a step.
     assert!(most < 0.1, "{most}");
     assert!((run.step * run.statistics.steps as f64 / 600.0 - 1.0).abs() < 1e-12, "{run:?}");
@@ -57,15 +79,16 @@ fn efforts_are_right_however_stiff_the_drive() {
         for method in [Method::Rosenbrock, Method::Bdf] {
             let settings = Settings { method, duration: 3.0, output: 7e-3, ..Settings::of(lift.description) };
             let (mut worst, mut peak) = (0.0_f64, 0.0_f64);
-            let run = simulate(&lift, start, &settings, |sample| {
-                let state = (Vector1::new(sample.q[0]), Vector1::new(sample.v[0]));
-                let effort = lift.drive_forces(sample.t, &state.0, &state.1).x;
-                let exact = mass * (GRAVITY - amplitude * frequency.powi(2) * (frequency * sample.t).sin());
-                worst = worst.max((effort - exact).abs());
-                peak = peak.max(exact.abs());
-                ControlFlow::Continue(())
-            })
-            .expect("a run");
+            let run = Simulation::of(&lift, start, &settings)
+                .observe(|sample| {
+                    let state = (Vector1::new(sample.q[0]), Vector1::new(sample.v[0]));
+                    let effort = lift.drive_forces(sample.t, &state.0, &state.1).x;
+                    let exact = mass * (GRAVITY - amplitude * frequency.powi(2) * (frequency * sample.t).sin());
+                    worst = worst.max((effort - exact).abs());
+                    peak = peak.max(exact.abs());
+                    ControlFlow::Continue(())
+                })
+                .expect("a run");
             let ringing = mass * amplitude * frequency.powi(3) * (mass / stiffness).sqrt();
             println!("{method} {stiffness:e}: {:.1e}, {:?}", worst / peak, run.statistics);
             // The tolerance allows a thousandth of the effort per step; rounding of a position of 0.1 m times the stiffness is 2e-5 N.
@@ -83,7 +106,7 @@ fn effort_error_includes_rounding_of_positions() {
     let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(lift.amplitude * lift.frequency) };
     for method in [Method::Rosenbrock, Method::Bdf] {
         let settings = Settings { method, duration: 1.0, ..Settings::of(lift.description) };
-        let run = simulate(&lift, start, &settings, |_| ControlFlow::Continue(())).expect("a run");
+        let run = Simulation::of(&lift, start, &settings).run().expect("a run");
         assert!(run.efforts[0].error > 10.0, "{method}: {run:?}");
     }
 }
@@ -94,11 +117,12 @@ fn lift_error(method: Method, tolerance: f64, output: f64) -> (f64, crane_model:
     let settings =
         Settings { method, tolerance, output, duration: 3.0, ..Settings::of(&common::description("", &[], &[])) };
     let mut worst = 0.0_f64;
-    let run = simulate(&lift, State::at_rest(Vector1::new(lift.sag())), &settings, |sample| {
-        worst = worst.max((sample.q[0] - lift.exact(sample.t)).abs());
-        ControlFlow::Continue(())
-    })
-    .expect("a run");
+    let run = Simulation::of(&lift, State::at_rest(Vector1::new(lift.sag())), &settings)
+        .observe(|sample| {
+            worst = worst.max((sample.q[0] - lift.exact(sample.t)).abs());
+            ControlFlow::Continue(())
+        })
+        .expect("a run");
     (worst, run)
 }
 
@@ -131,7 +155,7 @@ fn a_motion_after_a_rest_is_not_stepped_over() {
     let end = |settings: &Settings| {
         let mut end = 0.0;
         let rest = State::at_rest(Vector1::new(lift.sag()));
-        let run = simulate(&lift, rest, settings, |sample| {
+        let run = Simulation::of(&lift, rest, settings).observe(|sample| {
             end = sample.q[0] - lift.sag();
             ControlFlow::Continue(())
         });
@@ -209,7 +233,7 @@ fn statistics_equal_the_counted_evaluations() {
             Counted { crane: DoublePendulum::hanging(), evaluations: none, factorisations: AtomicUsize::new(0) };
         let settings = Settings { method, tolerance: 1e-6, duration: 3.0, ..Settings::of(crane.crane.description) };
         let start = State::at_rest(Vector2::new(2.2, -0.5));
-        let run = simulate(&crane, start, &settings, |_| ControlFlow::Continue(())).expect("a run");
+        let run = Simulation::of(&crane, start, &settings).run().expect("a run");
         assert_eq!(run.statistics.evaluations, crane.evaluations.into_inner(), "{method}");
         assert_eq!(run.statistics.factorisations, crane.factorisations.into_inner(), "{method}");
         let tried = run.statistics.steps + run.statistics.rejections;
@@ -223,7 +247,7 @@ fn a_run_ends_at_its_limit_of_steps() {
     for method in Method::ALL {
         let settings = Settings { method, most_steps: 20, ..Settings::of(lift.description) };
         let rest = State::at_rest(Vector1::new(lift.sag()));
-        let stopped = simulate(&lift, rest, &settings, |_| ControlFlow::Continue(())).expect_err("too many steps");
+        let stopped = Simulation::of(&lift, rest, &settings).run().expect_err("too many steps");
         assert_eq!((stopped.cause, stopped.method), (Cause::Steps, method));
         assert!(stopped.time > 0.0 && stopped.time < 10.0, "{stopped:?}");
         let (message, advice) = (stopped.to_string(), stopped.advice());
@@ -241,7 +265,7 @@ fn a_run_that_would_take_too_many_steps_ends_early() {
     let lift = Lift { stiffness: 1e16 * Lift::default().mass, ..Lift::default() };
     let settings = Settings { method: Method::DormandPrince, duration: 10.0, ..Settings::of(lift.description) };
     let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(1.0) };
-    let stopped = simulate(&lift, start, &settings, |_| ControlFlow::Continue(())).expect_err("too many steps");
+    let stopped = Simulation::of(&lift, start, &settings).run().expect_err("too many steps");
     assert_eq!(stopped.cause, Cause::Steps);
     // 2e4 steps of less than 1e-7 s.
     assert!(stopped.time < 2e-3 && stopped.step < 1e-7, "{stopped:?}");
@@ -261,14 +285,15 @@ fn energy_is_audited_by_every_method() {
                 ..Settings::of(&common::description("", &[], &[]))
             };
             let (mut first, mut worst) = (None, 0.0_f64);
-            simulate(&lift, State::at_rest(Vector1::new(lift.sag())), &settings, |sample| {
-                let (q, v) = (Vector1::new(sample.q[0]), Vector1::new(sample.v[0]));
-                let energy = lift.kinetic_energy(&q, &v) + lift.potential_energy(sample.t, &q);
-                let start = *first.get_or_insert(energy);
-                worst = worst.max((energy - start - sample.work + sample.dissipated).abs());
-                ControlFlow::Continue(())
-            })
-            .expect("a run");
+            Simulation::of(&lift, State::at_rest(Vector1::new(lift.sag())), &settings)
+                .observe(|sample| {
+                    let (q, v) = (Vector1::new(sample.q[0]), Vector1::new(sample.v[0]));
+                    let energy = lift.kinetic_energy(&q, &v) + lift.potential_energy(sample.t, &q);
+                    let start = *first.get_or_insert(energy);
+                    worst = worst.max((energy - start - sample.work + sample.dissipated).abs());
+                    ControlFlow::Continue(())
+                })
+                .expect("a run");
             worst
         };
         // A rate error of 4 1/s times the tolerance, in forces of 400 N over a run of 10 s.
@@ -283,11 +308,11 @@ fn an_adaptive_run_without_inertia_or_bounds_stops() {
         let settings = Settings { method, ..Settings::of(&common::description("", &[], &[])) };
         let massless = Lift { mass: 0.0, ..Lift::default() };
         let start = State::at_rest(Vector1::zeros());
-        let stopped = simulate(&massless, start, &settings, |_| ControlFlow::Continue(())).expect_err("no mass");
+        let stopped = Simulation::of(&massless, start, &settings).run().expect_err("no mass");
         assert_eq!((stopped.cause, stopped.coordinate.as_str()), (Cause::MassMatrix, "lift_z"), "{method}");
         let pendulum = DoublePendulum { gravity: 1e300, ..DoublePendulum::hanging() };
         let start = State::at_rest(Vector2::new(0.4, -0.3));
-        let stopped = simulate(&pendulum, start, &settings, |_| ControlFlow::Continue(())).expect_err("no number");
+        let stopped = Simulation::of(&pendulum, start, &settings).run().expect_err("no number");
         assert_ne!(stopped.cause, Cause::MassMatrix, "{method}: {stopped:?}");
         assert!(!stopped.advice().is_empty());
     }

@@ -2,7 +2,7 @@
 
 use crane_model::{
     Dynamics, Ensemble, dyn_crane,
-    dynamics::{Method, Settings, Stopped, ensemble, rk4::State, simulate},
+    dynamics::{Method, Settings, Simulation, Stopped, ensemble, rk4::State},
     statics,
 };
 use crane_shipped::{eight_link_flexible, knuckle_boom};
@@ -102,7 +102,7 @@ fn an_ensemble_of_any_size_ends_where_single_runs_end() {
     assert!(stopped.iter().all(Option::is_none), "{stopped:?}");
     for ((crane, start), last) in cranes.iter().zip(&last) {
         let mut single = Vec::new();
-        let run = simulate(crane, *start, &settings(), |sample| {
+        let run = Simulation::of(crane, *start, &settings()).observe(|sample| {
             single = sample.q.to_vec();
             std::ops::ControlFlow::Continue(())
         });

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use crane_model::{
     CraneModel,
     dyn_crane::{self, DynCrane},
-    dynamics::{InitialState, Method, Settings, Statistics, rk4, simulate},
+    dynamics::{InitialState, Method, Settings, Simulation, Statistics, rk4},
     modes,
     stability::limit,
     statics,
@@ -69,7 +69,7 @@ fn steps_of_the_reference_crane_allocate_nothing() {
         // Memory is allocated once per run: a run ten times as long allocates as often.
         let [short, long] = [0.02, 0.2].map(|duration| {
             let settings = Settings { method, duration, audit: true, ..Settings::of(description) };
-            let run = || simulate(&crane, start, &settings, |_| ControlFlow::Continue(())).expect("a stable run");
+            let run = || Simulation::of(&crane, start, &settings).run().expect("a stable run");
             allocation_counter::measure(|| _ = run()).count_total
         });
         assert_eq!(short, long, "{method}");

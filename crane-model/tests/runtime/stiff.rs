@@ -11,7 +11,7 @@ use crane_model::{
     CoordinateKind::{Rotation, Translation},
     CoordinateRole::Passive,
     CraneModel, Description, Dynamics, Implicit, ParameterError,
-    dynamics::{Method, Run, Settings, rk4::State, simulate},
+    dynamics::{Method, Run, Settings, Simulation, rk4::State},
 };
 use nalgebra::{Matrix2, Matrix4, SMatrix, Vector2};
 
@@ -83,7 +83,7 @@ fn swing(stiffness: f64, method: Method, tolerance: f64) -> (Vec<Vector2<f64>>, 
     let angle = 60_f64.to_radians();
     let start = State::at_rest(Vector2::new(GRAVITY * angle.cos() / stiffness, angle));
     let mut poses = Vec::new();
-    let run = simulate(&pendulum, start, &settings, |sample| {
+    let run = Simulation::of(&pendulum, start, &settings).observe(|sample| {
         poses.push(Vector2::from_column_slice(sample.q));
         ControlFlow::Continue(())
     });

@@ -18,11 +18,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rest = statics::Problem::of(&crane).solve();
     println!("{}, {} Newton steps", rest.status, rest.steps());
 
-    let start = dynamics::rk4::State::at_rest(SVector::from_column_slice(&rest.q));
+    let start = dynamics::InitialState::at_rest(rest.q);
     // Of the run in the spec, a line per half second.
     let settings = dynamics::Settings { output: 0.5, ..dynamics::Settings::of(crane.description()) };
     println!("{:>5}  {:>8}  {:>8}  {:>11}", "t [s]", "x [m]", "z [m]", "drive [N m]");
-    dynamics::simulate(&crane, start, &settings, |sample| {
+    dynamics::Simulation::of(&crane, start, &settings).observe(|sample| {
         let q = SVector::<f64, N>::from_column_slice(sample.q);
         let v = SVector::<f64, N>::from_column_slice(sample.v);
         let mut hook = [Vector3::zeros()];

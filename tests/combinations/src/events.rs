@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use crane_live::{LiveCrane, Motion};
 use crane_model::ColumnKind;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::{Cause, InitialState, Sample, Settings, Stopped, Watch, simulate_from, simulate_watched};
+use crane_model::dynamics::{Cause, InitialState, Sample, Settings, Simulation, Stopped, Watch};
 use crane_model::results::{Table, quantities_at};
 use crane_model::runs::{Failed, Reason, Start, imbalance, record};
 use fastrand::Rng;
@@ -160,7 +160,7 @@ fn in_two_parts(
     let whole = |t: f64| (t / settings.output).round() * settings.output;
     let until = if (whole(time) - time).abs() < 1e-9 { settings.output } else { time };
     let of_first = Settings { duration: time, output: until.min(settings.output), ..*settings };
-    simulate_watched(before, start, &of_first, &mut first).ok()?;
+    Simulation::of(before, start, &of_first).watch(&mut first).ok()?;
     let mut end = first.end;
     // Results before the event, at the interval of the run.
     let on_grid = |t: f64| (whole(t) - t).abs() < 1e-9;
@@ -170,12 +170,12 @@ fn in_two_parts(
         let next = (time / settings.output).ceil() * settings.output;
         let mut nothing = Part { crane: after, keeps: &|_| false, rows: &mut rows, end: end.clone() };
         let to_result = Settings { duration: next - time, output: next - time, ..*settings };
-        simulate_from(after, begin, &end, &to_result, &mut nothing).ok()?;
+        Simulation::of(after, &end, &to_result).at(begin).watch(&mut nothing).ok()?;
         (begin, end) = (next, nothing.end);
     }
     let mut second = Part { crane: after, keeps: &|_| true, rows: &mut rows, end: end.clone() };
     let rest = Settings { duration: settings.duration - begin, ..*settings };
-    simulate_from(after, begin, &end, &rest, &mut second).ok()?;
+    Simulation::of(after, &end, &rest).at(begin).watch(&mut second).ok()?;
     Some(rows)
 }
 

@@ -3,8 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use crane_model::dyn_crane::Instance;
-use crane_model::dynamics::{InitialState, Method, Sample, Settings, Watch, simulate_from};
+use crane_model::dynamics::{InitialState, Method, Sample, Settings, Simulation, Watch};
 use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Implicit, statics};
 
 /// Before any drive moves, s.
@@ -54,8 +53,7 @@ pub fn run<const N: usize, C: Implicit<N> + Default>(
     for _ in 0..repeat {
         poses.0.clear();
         let begin = Instant::now();
-        simulate_from(&Instance::<N, _>(&crane), BEGIN, &start, &settings, &mut poses)
-            .map_err(|stopped| stopped.to_string())?;
+        Simulation::of(&crane, &start, &settings).at(BEGIN).watch(&mut poses).map_err(|stopped| stopped.to_string())?;
         shortest = shortest.min(begin.elapsed().as_secs_f64());
     }
     Ok([vec![shortest], poses.0].concat())

@@ -256,7 +256,7 @@ pub fn holding(crane: &dyn DynCrane, numbers: &dyn Numbers, q: &[f64], along: &[
 /// events refer.
 ///
 /// # Errors
-/// As [`simulate_events`](super::simulate_events); a result only touches the value of a condition, or jumps over it.
+/// As [`Simulation::run`](super::Simulation::run); a result only touches the value of a condition, or jumps over it.
 pub fn simulate(
     crane: &dyn DynCrane,
     start: &InitialState,

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::{InitialState, Method, Settings, simulate_dyn};
+use crane_model::dynamics::{InitialState, Method, Settings, Simulation};
 use crane_model::results::Table;
 use crane_model::runs::{self, Start};
 
@@ -73,7 +73,7 @@ fn bristles_at_rest_are_a_spring() {
         let settings = Settings { output: end, tolerance: 1e-12, ..settings(&crane, method, end) };
         let start = InitialState { q: vec![0.0], v: vec![speed], x: Vec::new() };
         let mut x = f64::NAN;
-        let run = simulate_dyn(&crane, &start, &settings, &mut |sample| {
+        let run = Simulation::of(&crane, &start, &settings).observe(|sample| {
             x = sample.q[0];
             ControlFlow::Continue(())
         });

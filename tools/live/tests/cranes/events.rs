@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use crane_codegen::SourceFile;
 use crane_live::{Hold, LiveCrane, SteeredMotion};
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::{InitialState, Method, Settings};
-use crane_model::results::{Table, instants};
+use crane_model::dynamics::{InitialState, Method, Settings, Simulation};
+use crane_model::results::{QUANTITIES, Table, instants};
 use crane_model::runs::{Start, imbalance, record, record_checked};
 
 const GRAVITY: f64 = 9.81;
@@ -68,6 +68,30 @@ fn a_load_that_is_dropped_lets_its_spring_swing() {
             assert!((transmitted + force).abs() < 1e-6 * 5e4, "{method:?}, {} s: {transmitted}, {force}", instant.t);
         }
     }
+}
+
+/// A run that begins later has its results from there, the event at its time, and not the one before the start.
+#[test]
+fn a_run_that_begins_later_has_the_events_from_there() {
+    let lift = crane(&format!(
+        "{LIFT}events: [{{name: before, at: 300 ms, set: {{load: 200 kg}}}}, {{name: drop, at: 505 ms, set: {{load: 90 kg}}}}]\n"
+    ));
+    let (start, settings) = (Start::of(&lift as &dyn DynCrane).expect("a start"), settings(&lift, Method::Bdf, 0.25));
+    let (omega, mut times) = ((5e4_f64 / 90.0).sqrt(), Vec::new());
+    let run = Simulation::with_events(&lift, &QUANTITIES, start.state(), &settings).at(0.5).observe(|sample| {
+        let share = if sample.t < 0.505 { 1.0 } else { (omega * (sample.t - 0.505)).cos() };
+        // As above.
+        assert!(
+            (sample.q[0] + (GRAVITY / 5e4) * (90.0 + 500.0 * share)).abs() < 1e-6,
+            "{} s: {}",
+            sample.t,
+            sample.q[0]
+        );
+        times.push(sample.t);
+        ControlFlow::Continue(())
+    });
+    assert_eq!(run.map(|run| run.time), Ok(0.75));
+    assert_eq!(times, (0..=25).map(|i| 0.5 + 0.01 * f64::from(i)).collect::<Vec<f64>>());
 }
 
 /// At the time of a result, the result is that after the event.

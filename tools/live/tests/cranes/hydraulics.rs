@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, DynModel};
-use crane_model::dynamics::{InitialState, Method, Settings, simulate_dyn};
+use crane_model::dynamics::{InitialState, Method, Settings, Simulation};
 use crane_model::results::Table;
 use crane_model::runs::{self, Start};
 
@@ -119,7 +119,7 @@ fn trapped_oil_is_a_spring() {
         let settings = Settings { output: quarter, ..settings(method, 1e-10, quarter) };
         let start = InitialState { q: rest.q.clone(), v: vec![0.0, v], x: Vec::new() };
         let mut end = 0.0;
-        let watched = simulate_dyn(&crane, &start, &settings, &mut |sample| {
+        let watched = Simulation::of(&crane, &start, &settings).observe(|sample| {
             end = sample.q[1];
             ControlFlow::Continue(())
         });
@@ -280,7 +280,7 @@ fn every_method_follows_the_laws_written_a_second_time() {
         let mut found = [0.0; 6];
         let start = InitialState::at_rest(rest.q.clone());
         let settings = Settings { audit: true, ..settings(method, tolerance, end) };
-        let run = simulate_dyn(&crane, &start, &settings, &mut |sample| {
+        let run = Simulation::of(&crane, &start, &settings).observe(|sample| {
             found = [sample.q[1], sample.v[1], sample.x[0], sample.x[1], sample.x[2], sample.x[3]];
             ControlFlow::Continue(())
         });

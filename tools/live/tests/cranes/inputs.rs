@@ -122,7 +122,10 @@ fn a_controller_sets_inputs_between_steps() {
         for (step, lever) in [0.5, -0.2, 0.9, 0.1, 0.4].into_iter().enumerate() {
             DynCrane::set_input(&mut slide, 0, Some(lever));
             let mut last = Last(state.clone());
-            dynamics::simulate_from(&slide, 0.3 * step as f64, &state, &settings, &mut last).expect("it runs");
+            dynamics::Simulation::of(&slide, &state, &settings)
+                .at(0.3 * step as f64)
+                .watch(&mut last)
+                .expect("it runs");
             state = last.0;
             let (sin, cos) = (omega * 0.3).sin_cos();
             (x, v) = (lever + (x - lever) * cos + v / omega * sin, v * cos - (x - lever) * omega * sin);
