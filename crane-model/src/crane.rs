@@ -6,7 +6,7 @@ use crate::{
     ParameterError, Wrench,
     dyn_crane::{DynCrane, Energies},
     dynamics,
-    dynamics::{InitialState, Run, Sample, Stopped, ensemble::Member},
+    dynamics::{InitialState, Run, Sample, Stopped, ensemble, ensemble::Member},
     feet::{Feet, Slid},
     force_states,
     hydraulics::Oil,
@@ -119,7 +119,7 @@ impl dyn DynCrane + '_ {
         dynamics::Simulation::with_events(self, &QUANTITIES, start, settings).observe(observe)
     }
 
-    /// Runs of cranes that differ in their parameters, several at a time: [`dynamics::ensemble::simulate`].
+    /// Runs of cranes that differ in their parameters, several at a time: [`ensemble::simulate`], with the events of the crane.
     ///
     /// # Errors
     /// The parameters of a member break a rule of the spec language.
@@ -129,6 +129,17 @@ impl dyn DynCrane + '_ {
         settings: &dynamics::Settings,
         observe: &mut dyn FnMut(usize, &Sample<'_>),
     ) -> Result<Vec<Result<Run, Stopped>>, ParameterError> {
-        dynamics::ensemble::simulate_dyn(self, members, settings, observe)
+        if self.description().events.is_empty() {
+            return ensemble::simulate((self, members), settings, observe);
+        }
+        // Lanes do not change their parameters during a run.
+        let run = |(index, member): (usize, &Member)| {
+            let mut watch = |sample: &Sample<'_>| {
+                observe(index, sample);
+                ControlFlow::Continue(())
+            };
+            Ok(member.crane(self)?.simulate(&member.start, settings, &mut watch))
+        };
+        members.iter().enumerate().map(run).collect()
     }
 }

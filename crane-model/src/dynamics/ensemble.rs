@@ -4,7 +4,7 @@
 //! [`LaneDynamics`] or [`DynBlock`]: a crane's motion does not depend on the other lanes. With adaptive methods the cranes are a
 //! [fleet](crate::dyn_crane::DynEnsemble::fleet), one crane with the coordinates of all: the crane with the largest error decides on each step.
 
-use std::{convert::Infallible, ops::ControlFlow};
+use std::convert::Infallible;
 
 use nalgebra::SVector;
 
@@ -34,6 +34,18 @@ pub struct Member {
     pub parameters: Vec<f64>,
     /// Pose and rates at t = 0.
     pub start: InitialState,
+}
+
+impl Member {
+    /// The crane from which it differs, with its parameters.
+    ///
+    /// # Errors
+    /// They break a rule of the spec language.
+    pub(crate) fn crane(&self, of: &dyn DynCrane) -> Result<Box<dyn DynCrane>, ParameterError> {
+        let mut crane = of.boxed_clone();
+        crane.set_parameters(&self.parameters)?;
+        Ok(crane)
+    }
 }
 
 /// Poses and velocities of eight cranes.
@@ -72,63 +84,71 @@ pub fn step<const N: usize, L: LaneDynamics<N>>(cranes: &L, t: f64, h: f64, stat
         });
 }
 
-/// Integrates Eq. (23) of every crane from its state at t = 0, eight at a time, and passes `observe` its index in `cranes` and
-/// a sample at t = 0, at every interval and at the end, like a [`Simulation`] with RK4 and without audit.
-///
-/// A crane that leaves the bound of the settings ends with [`Stopped`], and the others continue. Returns one result per crane.
-pub fn simulate<const N: usize, C: Ensemble<N>>(
-    cranes: &[(C, State<N>)],
-    settings: &Settings,
-    mut observe: impl FnMut(usize, &Sample<'_>),
-) -> Vec<Result<Run, Stopped>> {
-    let mut results = Vec::with_capacity(cranes.len());
-    for (index, cranes) in cranes.chunks(LANES).enumerate() {
-        let mut block = Block::<N, _>(C::lanes(std::array::from_fn(|lane| &cranes[lane.min(cranes.len() - 1)].0)));
-        let starts: Vec<InitialState> = cranes.iter().map(|(_, start)| start.into()).collect();
-        let models: Vec<_> = cranes.iter().map(|(crane, _)| Instance::<N, _>(crane)).collect();
-        let models = models.iter().map(|model| model as &dyn DynModel).collect();
-        let batch = Batch::new(&mut block, LANES, starts.iter(), models);
-        results.extend(batch.run(settings, &mut |lane, sample| observe(index * LANES + lane, sample)));
-    }
-    results
+/// The cranes of an ensemble, with their starts: a list of cranes of a size in their type, `&[(C, State<N>)]`, or a crane of any size and those that
+/// differ from it in their parameters, `(&dyn DynCrane, &[Member])`.
+pub trait Members {
+    /// Why parameters are refused; [`Infallible`] for cranes that have theirs.
+    type Refused;
+
+    /// Passes on as many at a time as there are lanes, with the index of the first.
+    ///
+    /// # Errors
+    /// The parameters of a member break a rule of the spec language.
+    fn in_batches(self, run: &mut dyn FnMut(usize, Batch<'_>)) -> Result<(), Self::Refused>;
 }
 
-/// Like [`simulate`], for cranes of any size that differ from `crane` in their parameters, as many at a time as it has lanes.
+impl<const N: usize, C: Ensemble<N>> Members for &[(C, State<N>)] {
+    type Refused = Infallible;
+
+    fn in_batches(self, run: &mut dyn FnMut(usize, Batch<'_>)) -> Result<(), Infallible> {
+        for (index, cranes) in self.chunks(LANES).enumerate() {
+            let mut block = Block::<N, _>(C::lanes(std::array::from_fn(|lane| &cranes[lane.min(cranes.len() - 1)].0)));
+            let starts: Vec<InitialState> = cranes.iter().map(|(_, start)| start.into()).collect();
+            let models: Vec<_> = cranes.iter().map(|(crane, _)| Instance::<N, _>(crane)).collect();
+            let models = models.iter().map(|model| model as &dyn DynModel).collect();
+            run(index * LANES, Batch::new(&mut block, LANES, starts.iter(), models));
+        }
+        Ok(())
+    }
+}
+
+impl Members for (&dyn DynCrane, &[Member]) {
+    type Refused = ParameterError;
+
+    fn in_batches(self, run: &mut dyn FnMut(usize, Batch<'_>)) -> Result<(), ParameterError> {
+        let (crane, members) = self;
+        let lanes = crane.lanes();
+        for (index, members) in members.chunks(lanes).enumerate() {
+            let parameters = |lane: usize| members[lane.min(members.len() - 1)].parameters.as_slice();
+            let mut block = crane.block(&(0..lanes).map(parameters).collect::<Vec<_>>())?;
+            let starts = members.iter().map(|member| &member.start);
+            let models: Vec<_> = members.iter().map(|member| member.crane(crane)).collect::<Result<_, _>>()?;
+            let models = models.iter().map(|model| model.as_ref() as &dyn DynModel).collect();
+            run(index * lanes, Batch::new(block.as_mut(), lanes, starts, models));
+        }
+        Ok(())
+    }
+}
+
+/// Integrates Eq. (23) of every crane from its state at t = 0, as many at a time as there are lanes, and passes `observe` its index and a sample at
+/// t = 0, at every interval and at the end, like a [`Simulation`] with RK4 and without audit. Events do not happen.
+///
+/// A crane that leaves the bound of the settings ends with [`Stopped`], and the others continue. Returns one result per crane.
 ///
 /// # Errors
 /// The parameters of a member break a rule of the spec language.
 ///
 /// # Panics
 /// If a start does not have as many numbers as the crane has coordinates.
-pub fn simulate_dyn(
-    crane: &dyn DynCrane,
-    members: &[Member],
+pub fn simulate<M: Members>(
+    members: M,
     settings: &Settings,
-    observe: &mut dyn FnMut(usize, &Sample<'_>),
-) -> Result<Vec<Result<Run, Stopped>>, ParameterError> {
-    if !crane.description().events.is_empty() {
-        // Lanes do not change their parameters during a run.
-        let run = |(index, member): (usize, &Member)| {
-            let mut watch = |sample: &Sample<'_>| {
-                observe(index, sample);
-                ControlFlow::Continue(())
-            };
-            Ok(with_parameters(crane, &member.parameters)?.simulate(&member.start, settings, &mut watch))
-        };
-        return members.iter().enumerate().map(run).collect();
-    }
-    let lanes = crane.lanes();
-    let mut results = Vec::with_capacity(members.len());
-    for (index, members) in members.chunks(lanes).enumerate() {
-        let parameters = |lane: usize| members[lane.min(members.len() - 1)].parameters.as_slice();
-        let mut block = crane.block(&(0..lanes).map(parameters).collect::<Vec<_>>())?;
-        let starts = members.iter().map(|member| &member.start);
-        let models: Vec<_> =
-            members.iter().map(|member| with_parameters(crane, &member.parameters)).collect::<Result<_, _>>()?;
-        let models = models.iter().map(|model| model.as_ref() as &dyn DynModel).collect();
-        let batch = Batch::new(block.as_mut(), lanes, starts, models);
-        results.extend(batch.run(settings, &mut |lane, sample| observe(index * lanes + lane, sample)));
-    }
+    mut observe: impl FnMut(usize, &Sample<'_>),
+) -> Result<Vec<Result<Run, Stopped>>, M::Refused> {
+    let mut results = Vec::new();
+    members.in_batches(&mut |first, batch| {
+        results.extend(batch.run(settings, &mut |lane, sample| observe(first + lane, sample)));
+    })?;
     Ok(results)
 }
 
@@ -171,15 +191,8 @@ fn own_start(crane: &dyn DynCrane, start: &InitialState, settings: &Settings) ->
     Ok(InitialState { q, v, x })
 }
 
-/// A crane with other parameters.
-fn with_parameters(crane: &dyn DynCrane, parameters: &[f64]) -> Result<Box<dyn DynCrane>, ParameterError> {
-    let mut crane = crane.boxed_clone();
-    crane.set_parameters(parameters)?;
-    Ok(crane)
-}
-
 /// A block of moving cranes. Lane l of coordinate i is element `l % 8` of vector `i w + l / 8`, w vectors per coordinate.
-struct Batch<'a> {
+pub struct Batch<'a> {
     block: &'a mut dyn DynBlock,
     description: &'a Description,
     /// The cranes one by one; copies of the last one fill the remaining lanes, whose results are ignored.

@@ -86,7 +86,7 @@ fn run_ensemble(
     cranes: &[(knuckle_boom::Crane, State<{ knuckle_boom::N }>)],
 ) -> (Vec<Vec<f64>>, Vec<usize>, Vec<Option<Stopped>>) {
     let (mut last, mut samples) = (vec![Vec::new(); cranes.len()], vec![0; cranes.len()]);
-    let results = ensemble::simulate(cranes, &settings(), |crane, sample| {
+    let Ok(results) = ensemble::simulate(cranes, &settings(), |crane, sample| {
         last[crane] = sample.q.to_vec();
         samples[crane] += 1;
     });
