@@ -70,7 +70,7 @@ fn a_load_that_is_dropped_lets_its_spring_swing() {
     }
 }
 
-/// A run that begins later has its results from there, the event at its time, and not the one before the start.
+/// A run that begins later has its results and its events from there.
 #[test]
 fn a_run_that_begins_later_has_the_events_from_there() {
     let lift = crane(&format!(
