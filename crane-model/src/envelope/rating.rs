@@ -75,6 +75,9 @@ pub(super) struct LoadSearch<'a> {
 
 /// Shortest step between loads with which the crane rests, as a fraction of the way.
 const SHORTEST: f64 = 1.0 / 64.0;
+/// Most steps of Newton's method to a pose nearby: three to five are usual.
+const CLOSE: usize = 6;
+
 impl Posed<'_> {
     /// The crane at rest with a value of the load's parameter, wherever it is found. `near`: positions of the drives, and the pose there.
     pub(super) fn find(&mut self, value: f64, near: Option<(&[f64], &[f64])>) -> Option<Condition> {
@@ -84,10 +87,20 @@ impl Posed<'_> {
         found.or_else(|| near.and_then(|_| self.condition(search.find(None))))
     }
 
-    /// The crane at rest with a value of the load's parameter, near a pose.
-    fn find_near(&mut self, value: f64, q: &[f64]) -> Option<Condition> {
+    /// The rest with a value of the load's parameter, near a pose.
+    fn find_near(&mut self, value: f64, q: &[f64]) -> Option<Equilibrium> {
         self.crane.set_parameter(self.load, value).ok()?;
-        self.condition(RestSearch { crane: self.crane, positions: self.positions }.find_near(q)?)
+        RestSearch { crane: self.crane, positions: self.positions }.find_near(q)
+    }
+
+    /// The crane at rest with the second load, on the path of its pose with the first one: a rest that takes Newton's method more than [`CLOSE`] steps may be on
+    /// another path, beyond the end of this one, and is approached in shorter steps.
+    fn follow_load(&mut self, [from, to]: [f64; 2], begin: &Condition) -> Option<Condition> {
+        let found = self.find_near(to, &begin.q)?;
+        if found.steps() <= CLOSE {
+            return self.condition(found);
+        }
+        self.walk_load([from, to], begin.clone(), CLOSE)
     }
 
     /// The crane at rest as statics found it, if it stands there.
@@ -100,9 +113,15 @@ impl Posed<'_> {
 
     /// The crane at rest with the load `to`, from its pose with the load `from`, in steps between which it rests.
     pub(super) fn change_load(&mut self, from: f64, to: f64, begin: Condition) -> Option<Condition> {
+        self.walk_load([from, to], begin, usize::MAX)
+    }
+
+    /// The same in steps that take Newton's method at most so many of its own.
+    fn walk_load(&mut self, [from, to]: [f64; 2], begin: Condition, most: usize) -> Option<Condition> {
         let mut step = |at: &Condition, [_, part]: [f64; 2]| {
             let value = if part < 1.0 { from + part * (to - from) } else { to };
-            self.find_near(value, &at.q)
+            let found = self.find_near(value, &at.q).filter(|found| found.steps() <= most)?;
+            self.condition(found)
         };
         advance(begin, [SHORTEST, 1.0], &mut step)
     }
@@ -111,7 +130,7 @@ impl Posed<'_> {
     /// with which the crane does not rest nearby does not count.
     pub(super) fn find_largest(&mut self, first: Trial, search: &LoadSearch<'_>) -> (Option<Trial>, Option<Limit>) {
         largest(first, &search.range, &mut |load, near| {
-            let at = self.find_near(search.factor * load, &near.q)?;
+            let at = self.follow_load([near.load, load].map(|load| search.factor * load), &near.at)?;
             Some(self.trial(load, at, search))
         })
     }

@@ -70,7 +70,7 @@ pub(super) const ALONG: f64 = 0.25;
 pub(super) fn largest(
     first: Trial,
     range: &Range,
-    trial: &mut dyn FnMut(f64, &Condition) -> Option<Trial>,
+    trial: &mut dyn FnMut(f64, &Trial) -> Option<Trial>,
 ) -> (Option<Trial>, Option<Limit>) {
     if !first.is_within() {
         let governing = first.least().map(|margin| margin.limit);
@@ -123,7 +123,7 @@ pub(super) fn largest(
             }
         };
         strides = [strides[1], (next - now).abs()];
-        let found = trial(next, &within.at);
+        let found = trial(next, &within);
         if let Some(found) = &found {
             last = [last[1].take(), Some(found.point())];
         }
@@ -259,7 +259,7 @@ mod tests {
     fn a_step_that_was_too_long_is_no_limit() {
         let first = trial(0.0, &[1.0]);
         let (best, governing) = largest(first, &RANGE, &mut |load, near| {
-            (load - near.q[0] < 300.0)
+            (load - near.at.q[0] < 300.0)
                 .then(|| trial(load, &[if load < 250.0 { 1.0 } else { 1.0 - (load - 250.0) / 450.0 }]))
         });
         let load = best.unwrap().load;

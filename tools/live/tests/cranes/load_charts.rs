@@ -518,3 +518,28 @@ fn what_stands_on_its_head_is_followed_from_the_beginning() {
     let found = search.find(None);
     assert!(found.is_stable() && ((found.q[0] + found.q[1]).sin() + 1.0).abs() < 1e-12, "{:?}", found.q);
 }
+
+/// A load on two slanting springs, which snaps through where `P = 2 k (ℓ₀ − ℓ) z/ℓ` is greatest: it rests below with any load beyond, but its path ends there.
+#[test]
+fn a_load_that_snaps_through_does_not_count() {
+    const STIFFNESS: f64 = 1e5;
+    const HEIGHT: f64 = 0.2;
+    let spring = |name: &str, x: f64| {
+        format!(
+            "{{name: {name}, from: {{link: cart, at: [{x}, 0, 0]}}, to: {{link: plate, at: [0, 0, 0]}}, law: {{spring: {{stiffness: {STIFFNESS}, length: {}}}}}}}",
+            1.0_f64.hypot(HEIGHT)
+        )
+    };
+    let crane = crane(&format!(
+        "format: 1\nname: toggle\nparameters: {{payload: {{value: 1, unit: kg}}}}\nlinks:\n- {{name: cart, joint: {{prismatic: {{axis: x}}}}, mass: 5, com: [0, 0, 0]}}\n\
+         - {{name: plate, joint: {{prismatic: {{axis: z}}}}, mass: payload, com: [0, 0, 0]}}\n\
+         drives: [{{coordinate: cart_x, rigid: true, motion: {{hold: 0}}}}]\nguess: {{plate_z: {HEIGHT}}}\nconnectors: [{}, {}]\n",
+        spring("left", -1.0),
+        spring("right", 1.0)
+    ));
+    let carried = |z: f64| 2.0 * STIFFNESS * (1.0_f64.hypot(HEIGHT) - 1.0_f64.hypot(z)) * z / 1.0_f64.hypot(z);
+    let expected = (0..20_000).map(|k| carried(f64::from(k) * 1e-5)).fold(0.0, f64::max) / GRAVITY;
+    let rating = &chart(&crane, 0, &[0.0], Limits::none(crane.description()), 1.0)[0];
+    assert_eq!(rating.governing, Some(Limit::Equilibrium));
+    assert_close("the load that snaps through", rating.load.expect("it rests"), expected, ACCURACY);
+}
