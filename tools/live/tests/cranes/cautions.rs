@@ -57,6 +57,22 @@ fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
     }
 }
 
+/// A drive at its limit is told of in an ensemble, too, which records the rates of drives alone.
+#[test]
+fn ensembles_know_drives_at_their_limits() {
+    let crane = spec(
+        "format: 1\nname: weak\nlinks: [{name: hook, joint: {prismatic: {axis: z}}, mass: 100, com: [0, 0, 0]}, \
+         {name: bob, joint: {revolute: {axis: y}}, mass: 5, com: [0, 0, -1]}]\n\
+         drives: [{coordinate: hook_z, stiffness: 1e5, damping: 1e3, max_effort: 1300, motion: {quintic: {from: 0, to: 1, duration: 0.6}}}]\n",
+    );
+    let settings = Settings { duration: 1.0, audit: false, ..Settings::of(crane.description()) };
+    let single = cautions_of_run(&crane, &settings);
+    assert!(single.iter().any(|caution| caution.contains("1300")), "{single:?}");
+    let execution = Execution { threads: 1, done: &|_, _| (), cancelled: &|_| false };
+    let rows = ensemble::run_ensemble(&crane, &[crane.parameters().to_vec().into()], &settings, &execution);
+    assert_eq!(rows[0].cautions, single);
+}
+
 /// A mass that a cylinder lifts, with a nominal valve flow and the keys of its servo.
 fn lift(flow: f64, servo: &str) -> LiveCrane {
     spec(&format!(
