@@ -57,7 +57,7 @@ fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
     }
 }
 
-/// A drive at its limit is told of in an ensemble, too, which records the rates of drives alone.
+/// An ensemble reports a drive at its limit, too: it records the rates of drives alone.
 #[test]
 fn ensembles_know_drives_at_their_limits() {
     let crane = spec(
