@@ -84,10 +84,10 @@ impl dyn DynCrane + '_ {
         statics::with_tipped_status(self, 0.0, &self.guess(), statics::Problem::of(self).settings(settings).solve())
     }
 
-    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::Problem::at`], with the supports
+    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::Problem::at_time`], with the supports
     /// over which the crane tips, if it does.
     pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
-        let found = statics::Problem::of(self).at(t).from(q).settings(settings).solve();
+        let found = statics::Problem::of(self).at_time(t).from(q).settings(settings).solve();
         statics::with_tipped_status(self, t, q, found)
     }
 

@@ -51,7 +51,7 @@ pub trait CraneModel<const N: usize>: Send + Sync {
 
     /// Sets an input from now on, or lets it follow its spec again. An index out of range changes nothing.
     ///
-    /// A run reads the inputs when it begins; [`Simulation::at`](crate::dynamics::Simulation::at) continues it with changed ones.
+    /// A run reads the inputs when it begins; [`Simulation::at_time`](crate::dynamics::Simulation::at_time) continues it with changed ones.
     fn set_input(&mut self, _index: usize, _value: Option<f64>) {}
 
     /// The joints that close loops. Forces, accelerations and equilibria of the traits here are those of the open chain; what takes a crane

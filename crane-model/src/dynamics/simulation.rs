@@ -10,7 +10,7 @@ use crate::dyn_crane::{AnyCrane, CraneRef, DynCrane, DynDynamics, DynImplicit};
 
 /// A run: the integration of Eq. (23) from a start.
 ///
-/// This is the one entry of the solver, for cranes of a size in their type and of any size. A run begins at t = 0, unless [`at`](Self::at) says
+/// This is the one entry of the solver, for cranes of a size in their type and of any size. A run begins at t = 0, unless [`at_time`](Self::at_time) says
 /// otherwise. [`run`](Self::run) runs it, [`observe`](Self::observe) and [`watch`](Self::watch) do so with an observer.
 ///
 /// With `audit` in the settings, the work W of drives and loads and the dissipated energy D are integrated along with the motion:
@@ -68,7 +68,7 @@ impl<'a> Simulation<'a> {
 
     /// From time `t`, s, over the settings' duration: the drives' motions continue from there. A run in pieces is reproduced exactly if it is
     /// divided into the same pieces.
-    pub fn at(self, t: f64) -> Self {
+    pub fn at_time(self, t: f64) -> Self {
         Self { begin: t, ..self }
     }
 

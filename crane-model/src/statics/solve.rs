@@ -18,7 +18,7 @@ use crate::{
 ///
 /// | part | default |
 /// |---|---|
-/// | [`at`](Self::at): time of drives, loads and winches | t = 0 |
+/// | [`at_time`](Self::at_time): time of drives, loads and winches | t = 0 |
 /// | [`holding`](Self::holding): positions of the drives | those of their motions |
 /// | [`from`](Self::from): pose at which the search starts | [`super::guess()`] |
 /// | [`settings`](Self::settings): when it stops | [`Settings::default`] |
@@ -38,7 +38,7 @@ impl<'a> Problem<'a> {
     }
 
     /// With the drives, loads and winches where they are at time `t`, s: where the crane would rest if its motion stopped.
-    pub fn at(self, t: f64) -> Self {
+    pub fn at_time(self, t: f64) -> Self {
         Self { t, ..self }
     }
 

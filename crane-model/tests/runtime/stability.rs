@@ -70,7 +70,7 @@ fn predicted_limits_of_all_shipped_cranes_are_observed() {
             let start = statics::Problem::of(&crane).solve().q;
             // At the end the drives stand still; at t = 0 some already move.
             let t = cranes::$name::DESCRIPTION.duration;
-            let end = statics::Problem::of(&crane).at(t).from(&start).solve();
+            let end = statics::Problem::of(&crane).at_time(t).from(&start).solve();
             assert!(end.is_stable(), "{}", end.status);
             agree(stringify!($name), &crane, t, &vector(&end.q));
             seen += 1;

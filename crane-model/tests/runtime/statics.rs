@@ -19,7 +19,7 @@ fn an_equilibrium_follows_the_drives() {
     let lift = Lift::default();
     // The damper of the drive is at rest where the mass moves with it.
     let t = 0.1;
-    let equilibrium = Problem::of(&lift).at(t).from(&[0.0]).solve();
+    let equilibrium = Problem::of(&lift).at_time(t).from(&[0.0]).solve();
     assert_eq!(equilibrium.status, Status::Converged);
     let expected = lift.sag() + lift.amplitude * (lift.frequency * t).sin();
     // Rounding errors of forces of 400 N, over 4000 N/m.

@@ -170,12 +170,12 @@ fn in_two_parts(
         let next = (time / settings.output).ceil() * settings.output;
         let mut nothing = Part { crane: after, keeps: &|_| false, rows: &mut rows, end: end.clone() };
         let to_result = Settings { duration: next - time, output: next - time, ..*settings };
-        Simulation::of(after, &end, &to_result).at(begin).watch(&mut nothing).ok()?;
+        Simulation::of(after, &end, &to_result).at_time(begin).watch(&mut nothing).ok()?;
         (begin, end) = (next, nothing.end);
     }
     let mut second = Part { crane: after, keeps: &|_| true, rows: &mut rows, end: end.clone() };
     let rest = Settings { duration: settings.duration - begin, ..*settings };
-    Simulation::of(after, &end, &rest).at(begin).watch(&mut second).ok()?;
+    Simulation::of(after, &end, &rest).at_time(begin).watch(&mut second).ok()?;
     Some(rows)
 }
 

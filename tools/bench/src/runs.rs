@@ -53,7 +53,10 @@ pub fn run<const N: usize, C: Implicit<N> + Default>(
     for _ in 0..repeat {
         poses.0.clear();
         let begin = Instant::now();
-        Simulation::of(&crane, &start, &settings).at(BEGIN).watch(&mut poses).map_err(|stopped| stopped.to_string())?;
+        Simulation::of(&crane, &start, &settings)
+            .at_time(BEGIN)
+            .watch(&mut poses)
+            .map_err(|stopped| stopped.to_string())?;
         shortest = shortest.min(begin.elapsed().as_secs_f64());
     }
     Ok([vec![shortest], poses.0].concat())

@@ -123,7 +123,7 @@ fn a_controller_sets_inputs_between_steps() {
             DynCrane::set_input(&mut slide, 0, Some(lever));
             let mut last = Last(state.clone());
             dynamics::Simulation::of(&slide, &state, &settings)
-                .at(0.3 * step as f64)
+                .at_time(0.3 * step as f64)
                 .watch(&mut last)
                 .expect("it runs");
             state = last.0;
