@@ -146,6 +146,7 @@ class Connector:
     progression: object = 0
     falls: int = 1
     clearance: object = 0
+    centring: object = 0
     pad: object = None
     pin: object = None
     is_contact: bool = False
@@ -350,9 +351,9 @@ def read_crane(path):
                 if law is None:
                     exact.append(LoopJoint(link["name"], [pad.value()], [], pad))
                     continue
-                stiffness, damping, clearance = law
+                stiffness, damping, clearance, centring = law
                 law = (False, stiffness, damping, 0, 0)
-                crane.connectors.append(Connector([], [], [], [], pad.value(), *law, clearance=clearance, pad=pad))
+                crane.connectors.append(Connector([], [], [], [], pad.value(), *law, clearance=clearance, centring=centring, pad=pad))
     for written in spec.get("loop_joints", []):
         crane.loop_joints.append(read_loop_joint(crane, written, spans, carrier, read_guess(crane)))
         if "friction" in written or "damping" in written:

@@ -24,15 +24,12 @@ def in_cut(cut, force, moment):
     return [turn @ force, turn @ (moment - ca.cross(origin, force))]
 
 
-# Within its clearance, a pad centres the beam with this fraction of its stiffness.
-CENTRING = 1e-3
-
-
 def pressed(length, connector):
     """How far a connector is beyond its length without force, times its stiffness the force; within the clearance of a pad, a fraction of it."""
     stretch, clearance = length - connector.length, connector.clearance
-    beyond, below = stretch - (1 - CENTRING) * clearance, stretch + (1 - CENTRING) * clearance
-    return ca.if_else(stretch > clearance, beyond, ca.if_else(stretch < -clearance, below, CENTRING * stretch if connector.pad and not is_zero(clearance) else stretch))
+    centring = connector.centring
+    beyond, below = stretch - (1 - centring) * clearance, stretch + (1 - centring) * clearance
+    return ca.if_else(stretch > clearance, beyond, ca.if_else(stretch < -clearance, below, centring * stretch if connector.pad and not is_zero(clearance) else stretch))
 
 
 def rubbing(friction, rate):
@@ -332,8 +329,8 @@ class Derivations:
         clearance = connector.clearance
         if connector.pad is None or is_zero(clearance):
             return stretch**2 / 2
-        depth = ca.fabs(length) - clearance
-        return ca.if_else(depth > 0, depth**2 / 2 + CENTRING * clearance * (depth + clearance / 2), CENTRING * length**2 / 2)
+        depth, centring = ca.fabs(length) - clearance, connector.centring
+        return ca.if_else(depth > 0, depth**2 / 2 + centring * clearance * (depth + clearance / 2), centring * length**2 / 2)
 
     def connector_forces(self):
         """Generalized forces of elements between two points by virtual work, power of winches, energies and damping at rest."""
@@ -345,13 +342,14 @@ class Derivations:
             length, rate, force, stored = self.connector(connector)
             still = self.connector(connector, moving=False)[2]
             row = ca.jacobian(length, q)
-            forces -= row.T * force
+            # What is soft beside a pad depends on the place of the pad: forces are the slopes of the energy.
+            forces -= ca.gradient(stored, q) + row.T * (force - still) if connector.pad else row.T * force
             energy += stored
             # While the rope's way stays as long as it is, a winch changes the energy, and works against the damper.
             winding = self.rate(ca.SX(connector.length))
             wound = ca.jtimes(stored, self.crane.time, ca.SX(1)) - (force - still) * winding if connector.is_rope else 0
             power += wound
-            lost += wound + force * rate - self.rate(stored)
+            lost += (force - still) * rate if connector.pad else wound + force * rate - self.rate(stored)
             # Slopes of F(ℓ, ℓ̇) by symbols for length and rate; those of a rope where it is taut.
             stretched, running = ca.SX.sym("length"), ca.SX.sym("rate")
             taut = stretched > connector.length

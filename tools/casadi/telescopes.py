@@ -9,6 +9,10 @@ from transforms import translate
 # What holds a stage in addition to its joint.
 HELD = ["y", "z", "psi", "theta", "phi"]
 DIRECTIONS = ["y", "z", "twist"]
+# The least of a section's compliance against twist that counts beside an exact pad.
+LEAST_BESIDE = 0.02
+# Within its clearance, a pad centres the beam with this fraction of its stiffness.
+CENTRING = 1e-3
 
 
 @dataclass
@@ -35,6 +39,7 @@ class Pad:
     borders: list
     s: ca.SX
     direction: str
+    springs: list
 
     @property
     def length(self):
@@ -80,6 +85,28 @@ class Pad:
             tau = self.within(k)
             turned = ca.if_else(s < self.borders[k + 1], (1 - tau) * middles[k][:3, 1] + tau * middles[k + 1][:3, 1], turned)
         return ca.if_else(s < 0, middles[0][:3, 1], turned)
+
+    def softness(self):
+        """How much further than the curve a torque of 1 at the pad turns the beam there, and that times the damping over the stiffness of sections."""
+        shares = [ca.fmin(ca.fmax(self.within(k), 0), 1) for k in range(self.sections)]
+        soft = [share * (1 - share) / spring.stiffness for share, spring in zip(shares, self.springs)]
+        return sum(soft, ca.SX(0)), sum((c * spring.damping / spring.stiffness for c, spring in zip(soft, self.springs)), ca.SX(0))
+
+    def held_by(self, stiffness, damping, clearance):
+        """Stiffness, damping, clearance and centring of a pad and what is soft beside it, one after the other."""
+        soft, viscous = self.softness()
+        pad, centred = 1 / stiffness, 1 / (CENTRING * stiffness)
+        whole = 1 / (pad + soft)
+        damping = whole**2 * (damping * pad**2 + viscous)
+        return whole, damping, clearance * (1 + soft / centred), (pad + soft) / (centred + soft)
+
+    def held_exactly(self, spec):
+        """The same of an exact pad, which gives way by what is beside it, or by a little."""
+        stiffest = max(self.springs, key=lambda spring: spec.default(spring.stiffness))
+        soft, viscous = self.softness()
+        least = LEAST_BESIDE / stiffest.stiffness
+        soft, viscous = ca.fmax(soft, least), ca.fmax(viscous, least * stiffest.damping / stiffest.stiffness)
+        return 1 / soft, viscous / soft**2, ca.SX(0), ca.SX(CENTRING)
 
     def value(self):
         """The strain at the present pose."""
@@ -143,7 +170,7 @@ def stations_of(crane, span, index_of):
 
 
 def read_pads(crane, link, spans, index_of):
-    """The pads of a stage, front and rear, each with its law as written, or None in place of the law of an exact one."""
+    """The pads of a stage, front and rear, each with stiffness, damping, clearance and centring, or None in place of these of an exact one."""
     written = link["beam"]["slides_in"]
     spec = crane.spec
     outer, inner = spans[written["beam"]], spans[link["name"]]
@@ -153,14 +180,22 @@ def read_pads(crane, link, spans, index_of):
     front = Station(last, end, spec.default(end), outer.bodies[-1].transform @ translate(x=end))
     rear = Station(first, 0, 0.0, inner.bodies[0].transform)
     sides = [
-        (written["pads"]["front"], front, inner, overlap - q),
-        (written["pads"]["rear"], rear, outer, length_of(outer) - overlap + q),
+        (written["pads"]["front"], front, inner, overlap - q, link["name"]),
+        (written["pads"]["rear"], rear, outer, length_of(outer) - overlap + q, written["beam"]),
     ]
-    for keys, pad, beam, s in sides:
+    for keys, pad, beam, s, name in sides:
         stations = [pad, *stations_of(crane, beam, index_of)]
+        springs = [twist_spring(crane, f"{name}_{k}_phi") for k in range(1, len(beam.bodies))]
         vectors = [spec.vector(keys.get(key, [0, 0, 0])) for key in ("stiffness", "damping", "clearance")]
         for number, direction in enumerate(DIRECTIONS):
+            pad_there = Pad(stations, beam.borders, s, direction, springs if direction == "twist" else [])
             if direction in keys.get("exact", []):
-                yield Pad(stations, beam.borders, s, direction), None
+                yield pad_there, pad_there.held_exactly(spec) if pad_there.springs else None
             elif spec.default(vectors[0][number]) != 0 or not vectors[0][number].is_constant():
-                yield Pad(stations, beam.borders, s, direction), [v[number] for v in vectors]
+                law = [v[number] for v in vectors]
+                yield pad_there, pad_there.held_by(*law) if pad_there.springs else [*law, CENTRING]
+
+
+def twist_spring(crane, name):
+    """The spring of a coordinate of a beam."""
+    return next(spring for spring in crane.elements if spring.coordinate.name == name)

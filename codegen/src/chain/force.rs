@@ -1,6 +1,6 @@
 //! Forces: laws of strains.
 
-use super::{Chain, CoordinateId, Profile, Strain, Value};
+use super::{Axis, BeamAxis, Chain, Coordinate, CoordinateId, Profile, Strain, Value};
 
 /// A force that resists the growth of a strain s: `F(s, ṡ)`.
 #[derive(Clone, Debug, PartialEq)]
@@ -268,6 +268,20 @@ impl Follower {
         let Self { coordinate: one, leader: other, .. } = self;
         vec![*one.min(other), *one.max(other)]
     }
+}
+
+/// Of springs between elements, those against twist of a beam, section by section.
+pub fn twist_springs<'a>(
+    springs: &'a [Force],
+    coordinates: &'a [Coordinate],
+    beam: &BeamAxis,
+) -> impl Iterator<Item = &'a Spring> + use<'a> {
+    let (first, last) = (beam.first, beam.last());
+    let twists = move |CoordinateId(id): CoordinateId| {
+        let Coordinate { axis, body, .. } = coordinates[id];
+        axis == Axis::X && (first < body && body <= last)
+    };
+    springs.iter().filter(move |force| force.coordinate().is_some_and(twists)).filter_map(Force::spring)
 }
 
 impl Chain {

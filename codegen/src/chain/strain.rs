@@ -59,6 +59,8 @@ pub struct Sliding {
     pub coordinate: CoordinateId,
     /// What is measured.
     pub direction: PadDirection,
+    /// Whether the pad does not give way. Of a force, its spring stands for the least that a section beside the pad gives way.
+    pub exact: bool,
 }
 
 /// A direction in which a pad holds a beam.

@@ -146,6 +146,12 @@ impl<'a, 'g> AxisPoint<'a, 'g> {
         })
     }
 
+    /// `Σ x_k τ_k (1 − τ_k)` over the sections.
+    pub fn within_sections(&self, factors: impl Iterator<Item = Expr<'g>>) -> Expr<'g> {
+        let of_section = |(section, factor): (&Section<'g>, Expr<'g>)| factor * section.passed * (1.0 - section.passed);
+        self.sections.iter().zip(factors).map(of_section).fold(self.model.zero(), |sum, share| sum + share)
+    }
+
     /// The same for [`cross_axis`](Self::cross_axis).
     pub fn cross_axis_slopes(&self, axis: Axis) -> BTreeMap<usize, Vec3<'g>> {
         let beyond = self.sums(axis, |k| self.share(k));

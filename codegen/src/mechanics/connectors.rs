@@ -21,7 +21,7 @@ struct Pulled<'a, 'g> {
 fn pulled<'a, 'g>(model: &'a Model<'g>, kinematics: &'a Kinematics<'g>) -> impl Iterator<Item = Pulled<'a, 'g>> {
     Elements::new(model, kinematics, Group::Connectors).all().map(move |element| {
         let rate = element.strained.rate(model, &model.v);
-        let force = element.law.force(At::now(model), element.strained.length, rate);
+        let force = element.force(At::now(model), rate);
         Pulled { element, rate, force }
     })
 }
@@ -47,7 +47,7 @@ pub fn jacobians<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr
 /// `F, ∂F/∂ℓ, ∂F/∂ℓ̇` of every connector.
 pub fn tensions<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'g>> {
     let tension = |Pulled { element, rate, force }: Pulled<'_, 'g>| {
-        let [by_length, by_rate] = element.law.slopes(At::now(model), element.strained.length, rate);
+        let [by_length, by_rate] = element.slopes(At::now(model), rate);
         [force, by_length, by_rate]
     };
     pulled(model, kinematics).flat_map(tension).collect()

@@ -1,13 +1,17 @@
 //! Forces whose law depends on one strain: `f = −Jᵀ F(s, ṡ)`.
+//!
+//! Where a [compliance c](super::pads::Series) that depends on a coordinate q_k is in series, `∂E/∂c = −½ F²` with the force F at rest: on q_k acts
+//! `½ F² ∂c/∂q_k`, too, and the stiffness is `∂F/∂s J̃ᵀ J̃ + F ∂²s/∂q∂q − ½ F² ∂²c/∂q∂q` with `J̃ = J − F ∂c/∂q`.
 
 use super::acts::{Acts, Rest};
 use super::kinematics::Kinematics;
 use super::laws::{At, Law, law};
 use super::model::Model;
+use super::pads::Series;
 use super::strains::Strained;
 use super::tangent::Tangent;
 use super::vector::SymmetricMatrix;
-use crate::chain::{Force, Group};
+use crate::chain::{Force, Group, Sliding};
 use crate::symbolic::Expr;
 
 /// The forces of a group.
@@ -22,6 +26,30 @@ pub struct Element<'a, 'g> {
     pub force: &'a Force,
     pub law: &'a dyn Law,
     pub strained: Strained<'g>,
+    /// What is in series with it.
+    series: Option<Series<'g>>,
+}
+
+impl<'g> Element<'_, 'g> {
+    fn at<'a>(&self, at: At<'a, 'g>) -> At<'a, 'g> {
+        At { series: self.series.map(|series| [series.compliance, series.viscous]), ..at }
+    }
+
+    /// F
+    pub fn force(&self, at: At<'_, 'g>, rate: Expr<'g>) -> Expr<'g> {
+        self.law.force(self.at(at), self.strained.length, rate)
+    }
+
+    /// `∂F/∂s` and `∂F/∂ṡ`.
+    pub fn slopes(&self, at: At<'_, 'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
+        self.law.slopes(self.at(at), self.strained.length, rate)
+    }
+
+    /// `½ F²`, which acts on a coordinate on which what is in series depends, and slopes of the compliance.
+    fn on_series(&self, at: At<'_, 'g>) -> Option<(usize, Expr<'g>, [Expr<'g>; 2])> {
+        let (coordinate, slopes) = self.series?.by;
+        Some((coordinate, 0.5 * self.force(at, at.zero()).squared(), slopes))
+    }
 }
 
 impl<'a, 'g> Elements<'a, 'g> {
@@ -34,16 +62,25 @@ impl<'a, 'g> Elements<'a, 'g> {
         let &Elements { model, kinematics, forces } = self;
         forces.iter().map(move |force| {
             let strained = Strained::new(model, kinematics, &force.strain);
-            Element { force, law: law(&force.law), strained }
+            let sliding = force.strain.sliding();
+            let series = sliding.and_then(|sliding| Series::new(model, kinematics, sliding));
+            let series = match (sliding, force.spring()) {
+                (Some(Sliding { exact: true, .. }), Some(spring)) => series.map(|series| series.beyond(model, spring)),
+                _ => series,
+            };
+            Element { force, law: law(&force.law), strained, series }
         })
     }
 
     /// Generalized forces.
     fn sum(&self, at: At<'_, 'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let mut forces = self.model.zeros();
-        for Element { law, strained, .. } in self.all() {
-            let force = law.force(at, strained.length, strained.rate(self.model, v));
-            for (j, column) in strained.jacobian {
+        for element in self.all() {
+            let force = element.force(at, element.strained.rate(self.model, v));
+            if let Some((k, effort, [slope, _])) = element.on_series(at) {
+                forces[k] = forces[k] + effort * slope;
+            }
+            for (j, column) in element.strained.jacobian {
                 forces[j] = forces[j] - column * force;
             }
         }
@@ -62,31 +99,42 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
 
     fn energy(&self) -> Option<Expr<'g>> {
         let at = At::now(self.model);
-        let sum = |sum, Element { law, strained, .. }: Element<'_, 'g>| sum + law.twice_energy(at, strained.length);
-        Some(0.5 * self.all().fold(self.model.zero(), sum)).filter(|energy| !energy.is_zero())
+        let twice = |element: Element<'_, 'g>| element.law.twice_energy(element.at(at), element.strained.length);
+        let sum = self.all().map(twice).fold(self.model.zero(), |sum, twice| sum + twice);
+        Some(0.5 * sum).filter(|energy| !energy.is_zero())
     }
 
     fn dissipation(&self) -> Option<Expr<'g>> {
         let at = At::now(self.model);
-        Some(self.all().fold(self.model.zero(), |sum, Element { law, strained, .. }| {
-            sum + law.dissipation(at, strained.length, strained.rate(self.model, &self.model.v))
-        }))
+        let lost = |element: Element<'_, 'g>| {
+            let Element { law, strained, .. } = &element;
+            law.dissipation(element.at(at), strained.length, strained.rate(self.model, &self.model.v))
+        };
+        Some(self.all().map(lost).fold(self.model.zero(), |sum, lost| sum + lost))
     }
 
     /// `∂F/∂s Jᵀ J + F ∂²s/∂q∂q`: the stiffness of the material and, since J depends on the pose, that of the geometry.
     fn add_stiffness(&self, rest: &Rest<'g>, tangent: &mut Tangent<'_, 'g>) {
         let (at, model) = (At::rest(self.model, rest.t), self.model);
-        for Element { force, law, strained } in self.all() {
-            let [stiffness, _] = law.slopes(at, strained.length, model.zero());
-            let tension = law.force(at, strained.length, model.zero());
+        for mut element in self.all() {
+            let [stiffness, _] = element.slopes(at, model.zero());
+            let tension = element.force(at, model.zero());
+            if let Some((k, effort, [slope, bend])) = element.on_series(at) {
+                tangent.matrix.add(k, k, -effort * bend);
+                for (_, column) in element.strained.jacobian.iter_mut().filter(|(j, _)| *j == k) {
+                    *column = *column - tension * slope;
+                }
+            }
+            let Element { force, strained, .. } = element;
             strained.add_tangent((model, self.kinematics), &force.strain, [tension, stiffness], tangent);
         }
     }
 
     fn add_damping(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
         let at = At::rest(self.model, rest.t);
-        for Element { law, strained, .. } in self.all() {
-            strained.add_square(law.damping_at_rest(at, strained.length), matrix);
+        for element in self.all() {
+            let Element { law, strained, .. } = &element;
+            strained.add_square(law.damping_at_rest(element.at(at), strained.length), matrix);
         }
     }
 
@@ -94,8 +142,9 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
     fn add_step_matrices(&self, [stiffness, damping]: [&mut SymmetricMatrix<'g>; 2]) {
         let at = At::now(self.model);
         let linear = self.all().filter(|Element { force, law, .. }| force.coordinate().is_some() && law.is_linear());
-        for Element { law, strained, .. } in linear {
-            let [by_strain, by_rate] = law.slopes(at, strained.length, strained.rate(self.model, &self.model.v));
+        for element in linear {
+            let strained = &element.strained;
+            let [by_strain, by_rate] = element.slopes(at, strained.rate(self.model, &self.model.v));
             strained.add_square(by_strain, stiffness);
             strained.add_square(by_rate, damping);
         }
@@ -104,9 +153,10 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
     /// Those of other laws on single coordinates.
     fn add_nonlinear(&self, diagonal: &mut [[Expr<'g>; 2]]) {
         let at = At::now(self.model);
-        for Element { force, law, strained } in self.all() {
+        for element in self.all() {
+            let Element { force, law, strained, .. } = &element;
             let Some(coordinate) = force.coordinate().filter(|_| !law.is_linear()) else { continue };
-            let [stiffness, mut damping] = law.slopes(at, strained.length, strained.rate(self.model, &self.model.v));
+            let [stiffness, mut damping] = element.slopes(at, strained.rate(self.model, &self.model.v));
             if law.declines() && !damping.is_zero() {
                 damping = damping.max(self.model.zero());
             }

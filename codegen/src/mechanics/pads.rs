@@ -11,6 +11,9 @@
 //!
 //! The first part counts if j moves the beam, the second if it moves the pad; if j moves both as one body, ℓ does not change. A tension of
 //! 1 N pulls the pad with n at P, and the beam with −n there; in twist, a moment `y × z` turns the pad, and its opposite the beam. A pad is frictionless: no force acts on what slides except through the directions of n.
+//!
+//! A torque M that enters at a pad makes that of the beam jump within a section. Its spring twists by the mean, and the beam at the pad further by
+//! `M c`, with `c = τ (1 − τ)/k` of the [section](super::beam_axis) with the spring k against twist: a [compliance in series](Series) with the pad.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +23,7 @@ use super::model::Model;
 use super::place::{Along, Place, Pull};
 use super::strains::point;
 use super::vector::{Rotation, SymmetricMatrix, Vec3};
-use crate::chain::{Axis, BodyId, CoordinateId, PadDirection, Sliding};
+use crate::chain::{Axis, BodyId, CoordinateId, Group, PadDirection, Sliding, Spring, twist_springs};
 use crate::symbolic::Expr;
 
 /// A beam at a pad.
@@ -31,6 +34,60 @@ pub struct AtPad<'g> {
     pub jacobian: Vec<(usize, Expr<'g>)>,
     /// What a tension of 1 N exerts on bodies.
     pub pulls: Vec<(Place<'g>, Pull<'g>)>,
+}
+
+/// A compliance in series with a force: where a pad against twist is within a section, what the mean of the torque leaves out.
+#[derive(Clone, Copy)]
+pub struct Series<'g> {
+    /// c, rad/(N m).
+    pub compliance: Expr<'g>,
+    /// `Σ c_k β_k` of the sections, β their damping over their stiffness, rad s/(N m).
+    pub viscous: Expr<'g>,
+    /// The coordinate on which c depends, with `∂c/∂q_k` and `∂²c/∂q_k²`.
+    pub by: (usize, [Expr<'g>; 2]),
+}
+
+impl<'g> Series<'g> {
+    /// At a pad against twist of a beam that can twist.
+    pub fn new(model: &Model<'g>, kinematics: &Kinematics<'g>, sliding: &Sliding) -> Option<Self> {
+        let springs: Vec<_> = match sliding.direction {
+            PadDirection::Along(_) => return None,
+            PadDirection::Twist => twist_springs(model.chain.of(Group::Elements), &model.chain.coordinates, &sliding.beam).collect(),
+        };
+        if springs.is_empty() {
+            return None;
+        }
+        let soft = |spring: &Spring| 1.0 / model.number(&spring.stiffness);
+        let compliance = |s| {
+            let beam = AxisPoint::new(model, kinematics, &sliding.beam, s);
+            beam.within_sections(springs.iter().map(|spring| soft(spring)))
+        };
+        let (sign, s) = place(model, sliding);
+        // At any s, to be differentiated.
+        let [free, _] = model.free_symbols();
+        let slope = model.graph.derivatives(&[compliance(free)], free)[0];
+        let bend = model.graph.derivatives(&[slope], free)[0];
+        let here = |expression| model.graph.substitute(expression, &[(free, s)]);
+        let viscous = springs.iter().map(|spring| model.number(&spring.damping) * soft(spring).squared());
+        Some(Series {
+            compliance: compliance(s),
+            viscous: AxisPoint::new(model, kinematics, &sliding.beam, s).within_sections(viscous),
+            by: (sliding.coordinate.0, [sign * here(slope), here(bend)]),
+        })
+    }
+
+    /// What exceeds the compliance of a spring, which already contains the rest.
+    pub fn beyond(self, model: &Model<'g>, spring: &Spring) -> Self {
+        let soft = 1.0 / model.number(&spring.stiffness);
+        let (zero, more) = (model.zero(), self.compliance - soft);
+        let viscous = self.viscous - model.number(&spring.damping) * soft.squared();
+        let (coordinate, slopes) = self.by;
+        Series {
+            compliance: more.max(zero),
+            viscous: viscous.max(zero),
+            by: (coordinate, slopes.map(|slope| more.select(slope, zero))),
+        }
+    }
 }
 
 /// A direction at a pad: ℓ, and what changes it.

@@ -331,7 +331,7 @@ impl<'a> Check<'a> {
         connectors.extend(self.contacts(crane, &cylinders));
         let (couplings, rigid_couplings) = self.couplings(crane, &cylinders);
         connectors.extend(couplings);
-        let (pads, exact_pads) = self.pads(&cylinders);
+        let (pads, exact_pads) = self.pads(&cylinders, &forces);
         connectors.extend(pads);
         let (mut loop_joints, in_pins) = self.loop_joints(crane, &cylinders);
         loop_joints.extend(exact_pads);

@@ -4,7 +4,7 @@ use super::on::Attached;
 use super::{Check, LinkBodies, Owner};
 use crate::chain::{
     self, Attachment, Axis, BeamAxis, Clearance, CoordinateId, CoordinateKind, Cylinder, Force, Group, Law, LoopJoint,
-    LoopJointKind, PadDirection, Sliding, Spring, Step, Strain, Value,
+    LoopJointKind, PadDirection, Sliding, Spring, Step, Strain, Value, twist_springs,
 };
 use crate::diagnostic::{Span, rule};
 use crate::node::Limit;
@@ -12,6 +12,10 @@ use crate::spec::{AxisName, Beam, ExactDirection, Joint, Link, Pad, Spanned, Vec
 
 /// An overlap may exceed a beam by this fraction of its length, because both are decimal numbers.
 const WRITTEN: f64 = 1e-9;
+
+/// The least compliance of a section beside an exact pad against twist, as a share of that of the whole section: where the pad is within 2 % of an end
+/// of a section. Without it, the pad would become a spring without bound there.
+const LEAST_BESIDE: f64 = 0.02;
 
 /// Motions of the inner beam besides that of its joint, which the pads hold.
 const HELD: [(CoordinateKind, Axis); 5] = [
@@ -248,8 +252,17 @@ impl<'a> Check<'a> {
         }
     }
 
+    /// The spring of an exact pad against twist on a beam that can twist: the stiffest section's, over the least compliance of a section beside a pad.
+    fn twist_beside(&self, springs: &[Force], beam: &BeamAxis) -> Option<Law> {
+        let now = |spring: &&Spring| self.now(&spring.stiffness);
+        let springs = twist_springs(springs, &self.coordinates, beam);
+        let Spring { stiffness, damping, .. } = springs.max_by(|one, other| now(one).total_cmp(&now(other)))?;
+        let [stiffness, damping] = [stiffness, damping].map(|number| (1.0 / LEAST_BESIDE) * number.clone());
+        Some(Law::Spring(Spring::new(stiffness, damping)))
+    }
+
     /// The pads of all telescopes: forces, and joints of those that are exact.
-    pub(super) fn pads(&mut self, cylinders: &[Cylinder]) -> (Vec<Force>, Vec<LoopJoint>) {
+    pub(super) fn pads(&mut self, cylinders: &[Cylinder], springs: &[Force]) -> (Vec<Force>, Vec<LoopJoint>) {
         let (mut forces, mut joints) = (Vec::new(), Vec::new());
         for Stage { link, span, beams: [outer, inner], overlap, coordinate, pads: [front, rear] } in
             std::mem::take(&mut self.stages)
@@ -264,11 +277,16 @@ impl<'a> Check<'a> {
                 let mut held = Vec::new();
                 for ((direction, _, word), hold) in DIRECTIONS.into_iter().zip(holds) {
                     let (of_pad, beam, start) = (pad.clone(), beam.clone(), start.clone());
-                    let sliding = Sliding { pad: of_pad, beam, start, grows, coordinate, direction };
-                    match hold {
-                        Hold::No => {}
-                        Hold::Exactly => held.push(sliding),
-                        Hold::With(law) => {
+                    let exact = matches!(hold, Hold::Exactly);
+                    let law = match hold {
+                        Hold::No => continue,
+                        Hold::With(law) => Some(law),
+                        Hold::Exactly => Some(&beam).filter(|_| direction == PadDirection::Twist).and_then(|beam| self.twist_beside(springs, beam)),
+                    };
+                    let sliding = Sliding { pad: of_pad, beam, start, grows, coordinate, direction, exact };
+                    match law {
+                        None => held.push(sliding),
+                        Some(law) => {
                             let name = format!("{link}_{which}_{word}");
                             self.register_connector(&name, span, cylinders);
                             let strain = Strain::Sliding(Box::new(sliding));

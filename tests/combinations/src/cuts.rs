@@ -266,7 +266,7 @@ fn connectors(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -
 /// one; it begins and ends where the beam does.
 fn pad_forces(
     crane: &LiveCrane,
-    Sliding { pad, beam, start, grows, coordinate, direction }: &Sliding,
+    Sliding { pad, beam, start, grows, coordinate, direction, .. }: &Sliding,
     tension: f64,
     (q, transforms): (&[f64], &[Matrix4<f64>]),
 ) -> Vec<(usize, Screw)> {

@@ -31,21 +31,39 @@ pub struct At<'a, 'g> {
     pub t: Expr<'g>,
     /// Whether such motions go on; at rest they do not.
     pub moving: bool,
+    /// Compliance and damping in series with a spring, if there are: c and e, with which it is `k/(1 + k c)`.
+    pub series: Option<[Expr<'g>; 2]>,
 }
 
 impl<'a, 'g> At<'a, 'g> {
     /// In motion, at the present time.
     pub fn now(model: &'a Model<'g>) -> Self {
-        At { model, t: model.t, moving: true }
+        At { model, t: model.t, moving: true, series: None }
     }
 
     /// At rest at a time.
     pub fn rest(model: &'a Model<'g>, t: Expr<'g>) -> Self {
-        At { model, t, moving: false }
+        At { model, t, moving: false, series: None }
     }
 
     pub fn number(&self, value: &chain::Value) -> Expr<'g> {
         self.model.number(value)
+    }
+
+    /// `1 + k c`: how many times softer the compliance in series makes a spring; `None` without one.
+    pub fn softened(&self, stiffness: Expr<'g>) -> Option<Expr<'g>> {
+        self.series.map(|[compliance, _]| 1.0 + stiffness * compliance)
+    }
+
+    /// `k/(1 + k c)`
+    pub fn stiffness(&self, stiffness: Expr<'g>) -> Expr<'g> {
+        self.softened(stiffness).map_or(stiffness, |times| stiffness / times)
+    }
+
+    /// `(d + k² e)/(1 + k c)²`: each part dissipates at its share of the rate.
+    pub fn damping(&self, stiffness: Expr<'g>, damping: Expr<'g>) -> Expr<'g> {
+        let softened = self.softened(stiffness).zip(self.series);
+        softened.map_or(damping, |(times, [_, viscous])| (damping + stiffness.squared() * viscous) / times.squared())
     }
 
     pub fn zero(&self) -> Expr<'g> {

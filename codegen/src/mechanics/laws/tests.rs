@@ -67,12 +67,37 @@ fn at_all_states(mut check: impl FnMut(&str, &dyn Law, At<'_, '_>, [f64; 2])) {
         for strain in STRAINS {
             for rate in RATES {
                 for moving in [true, false] {
-                    let at = At { model: &model, t: graph.constant(0.7), moving };
-                    check(name, law(given), at, [strain, rate]);
+                    // With a compliance as large as that of a spring, and with none.
+                    for series in [None, Some([2e-3, 5e-5].map(|x| graph.constant(x)))] {
+                        let at = At { model: &model, t: graph.constant(0.7), moving, series };
+                        check(name, law(given), at, [strain, rate]);
+                    }
                 }
             }
         }
     }
+}
+
+/// What is in series carries the same force, `F(s) = F₀(s − γ F)` with F₀ alone, and `∂E/∂γ = −½ F²`.
+#[test]
+fn what_is_in_series_carries_the_same_force() {
+    const COMPLIANCE: f64 = 2e-3;
+    const H: f64 = 1e-7;
+    at_all_states(|name, law, at, [strain, _]| {
+        if !["spring", "pad with clearance"].contains(&name) {
+            return;
+        }
+        let c = |x: f64| at.model.graph.constant(x);
+        let with = |compliance: f64| At { series: Some([c(compliance), c(0.0)]), ..at };
+        let force = number(law.force(with(COMPLIANCE), c(strain), c(0.0)));
+        let alone = At { series: None, ..at };
+        let carried = number(law.force(alone, c(strain - COMPLIANCE * force), c(0.0)));
+        assert_close(carried, force, &format!("{name} at {strain}"));
+        let energy = |compliance: f64| 0.5 * number(law.twice_energy(with(compliance), c(strain)));
+        let slope = (energy(COMPLIANCE + H) - energy(COMPLIANCE - H)) / (2.0 * H);
+        // Energies of order 1e3 J rounded, over 2e-7.
+        assert!((slope + 0.5 * force * force).abs() < 2e-6 * (1.0 + force * force), "{name} at {strain}: {slope}, {force}");
+    });
 }
 
 /// A few rounding errors of forces of order 1e3.

@@ -9,8 +9,8 @@ use crane_model::nalgebra::Vector3;
 
 use super::sliding_beams::{LENGTH, LOAD, OVERLAP, Telescope, assert_section_forces, closed_form, rest, run};
 
-/// Equations of both pads.
-const EQUATIONS: usize = 5;
+/// Equations of both pads. Against twist of beams that can twist, what is beside the pad is a spring.
+const EQUATIONS: usize = 4;
 
 fn exact(sections: &str) -> Telescope {
     Telescope { sections: sections.into(), exact: true, ..Telescope::default() }
@@ -172,7 +172,7 @@ fn pads_carry_what_levers_say() {
     let (a, b) = (LENGTH - OVERLAP, OVERLAP);
     let [front, rear] = [LOAD * (a + b) / b, LOAD * a / b];
     let found = crane.loop_forces_at_rest(&q);
-    for (found, expected) in found.iter().zip([0.0, -front, 0.0, 0.0, -rear]) {
+    for (found, expected) in found.iter().zip([0.0, -front, 0.0, -rear]) {
         // Slopes of up to 2e-3 turn the forces.
         assert!((found - expected).abs() < 1e-5 * front, "{found} instead of {expected}");
     }
@@ -187,6 +187,7 @@ fn a_beam_that_extends_under_load_keeps_its_energy() {
         gravity: 9.81,
         density: 4000.0,
         load: [0.0, 500.0, -3000.0],
+        torque: 4000.0,
         ..exact("4")
     };
     let crane = telescope.crane();
