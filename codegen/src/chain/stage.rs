@@ -64,7 +64,8 @@ impl Chain {
 
 /// The stage of a rear pad, at the beginning of the inner beam, along y: each stage has one.
 fn stage(sliding: &Sliding) -> Option<Stage<'_>> {
-    let Sliding { pad, beam, start, grows: true, coordinate, direction: PadDirection::Along(Axis::Y), .. } = sliding else {
+    let Sliding { pad, beam, start, grows: true, coordinate, direction: PadDirection::Along(Axis::Y), .. } = sliding
+    else {
         return None;
     };
     Some(Stage { outer: beam, inner: pad.body?, coordinate: *coordinate, behind: start })

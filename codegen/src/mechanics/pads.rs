@@ -52,7 +52,9 @@ impl<'g> Series<'g> {
     pub fn new(model: &Model<'g>, kinematics: &Kinematics<'g>, sliding: &Sliding) -> Option<Self> {
         let springs: Vec<_> = match sliding.direction {
             PadDirection::Along(_) => return None,
-            PadDirection::Twist => twist_springs(model.chain.of(Group::Elements), &model.chain.coordinates, &sliding.beam).collect(),
+            PadDirection::Twist => {
+                twist_springs(model.chain.of(Group::Elements), &model.chain.coordinates, &sliding.beam).collect()
+            }
         };
         if springs.is_empty() {
             return None;

@@ -36,7 +36,7 @@ pub struct Pad {
     /// Clearance on each side along y and z, and of the twist. Default none: `[0, 0, 0]`.
     #[key(unit = "m, m, rad", limit = NotNegative)]
     pub clearance: Option<Spanned<Vector>>,
-    /// Directions in which the pad does not give way: equations of a loop in place of springs. Default none.
+    /// Directions in which the pad does not give way: equations of a loop in place of springs, or, against twist of a beam with sections, the spring that is beside it. Default none.
     pub exact: Option<Spanned<Vec<Spanned<ExactDirection>>>>,
 }
 

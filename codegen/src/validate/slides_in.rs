@@ -281,7 +281,9 @@ impl<'a> Check<'a> {
                     let law = match hold {
                         Hold::No => continue,
                         Hold::With(law) => Some(law),
-                        Hold::Exactly => Some(&beam).filter(|_| direction == PadDirection::Twist).and_then(|beam| self.twist_beside(springs, beam)),
+                        Hold::Exactly => Some(&beam)
+                            .filter(|_| direction == PadDirection::Twist)
+                            .and_then(|beam| self.twist_beside(springs, beam)),
                     };
                     let sliding = Sliding { pad: of_pad, beam, start, grows, coordinate, direction, exact };
                     match law {

@@ -343,7 +343,7 @@ impl Writer<'_> {
         let clearance = if self.rng.borrow_mut().bool() { 2e-4 } else { 0.0 };
         let pad = |twist: f64| {
             json!({"stiffness": [self.between(5e7, 2e8), self.between(5e7, 2e8), twist], "damping": [1e5, 1e5, 2e3],
-                "clearance": [clearance, clearance, 0]})
+                "clearance": [clearance, clearance, 5.0 * clearance]})
         };
         let pads = if self.has(F::ExactPads) {
             let rear =

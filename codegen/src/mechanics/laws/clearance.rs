@@ -37,7 +37,8 @@ impl Law for Clearance {
     /// `k (x² + ε h (2s − h))`
     fn twice_energy<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
         let [pressed, held] = self.pressed(at, strain);
-        at.stiffness(at.number(&self.stiffness)) * (pressed.squared() + self.centring(at) * held * (2.0 * strain - held))
+        at.stiffness(at.number(&self.stiffness))
+            * (pressed.squared() + self.centring(at) * held * (2.0 * strain - held))
     }
 
     fn resistance<'g>(&self, at: At<'_, 'g>, _: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
@@ -46,7 +47,8 @@ impl Law for Clearance {
 
     fn force<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
         let [pressed, held] = self.pressed(at, strain);
-        at.stiffness(at.number(&self.stiffness)) * (pressed + self.centring(at) * held) + self.resistance(at, strain, rate)
+        at.stiffness(at.number(&self.stiffness)) * (pressed + self.centring(at) * held)
+            + self.resistance(at, strain, rate)
     }
 
     fn dissipation<'g>(&self, at: At<'_, 'g>, _: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {

@@ -21,7 +21,8 @@ impl Law for Spring {
 
     /// `k x + d ṡ`
     fn force<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
-        at.stiffness(at.number(&self.stiffness)) * (strain - at.number(&self.length)) + self.resistance(at, strain, rate)
+        at.stiffness(at.number(&self.stiffness)) * (strain - at.number(&self.length))
+            + self.resistance(at, strain, rate)
     }
 
     fn dissipation<'g>(&self, at: At<'_, 'g>, _: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {

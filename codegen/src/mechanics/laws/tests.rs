@@ -96,7 +96,10 @@ fn what_is_in_series_carries_the_same_force() {
         let energy = |compliance: f64| 0.5 * number(law.twice_energy(with(compliance), c(strain)));
         let slope = (energy(COMPLIANCE + H) - energy(COMPLIANCE - H)) / (2.0 * H);
         // Energies of order 1e3 J rounded, over 2e-7.
-        assert!((slope + 0.5 * force * force).abs() < 2e-6 * (1.0 + force * force), "{name} at {strain}: {slope}, {force}");
+        assert!(
+            (slope + 0.5 * force * force).abs() < 2e-6 * (1.0 + force * force),
+            "{name} at {strain}: {slope}, {force}"
+        );
     });
 }
 

@@ -63,7 +63,8 @@ impl Default for Telescope {
 impl Telescope {
     /// A cantilever along x, and a beam that slides in it along x, with a load at its tip.
     fn spec(&self) -> String {
-        let Telescope { sections, stiffness: k, overlap, motion, clearance: c, gravity, density, load, torque, exact } = self;
+        let Telescope { sections, stiffness: k, overlap, motion, clearance: c, gravity, density, load, torque, exact } =
+            self;
         let beam = |bending: f64| {
             format!(
                 "length: {LENGTH}, sections: {sections}, material: {{E: 1e9, G: 4e8, density: {density}}}, damping: {{beta: 1e-3}}, \
