@@ -51,6 +51,7 @@ mod turning;
 mod twist;
 mod vector;
 
+pub use functions::Part;
 pub use omissions::left_out;
 
 use crate::chain::{Analyses, Chain};
@@ -67,4 +68,10 @@ pub fn derive(chain: &Chain, analyses: Analyses) -> Program {
 #[must_use]
 pub fn derive_verbatim(chain: &Chain, analyses: Analyses) -> Program {
     functions::program(Graph::verbatim(), chain, analyses)
+}
+
+/// The functions of a part that the crane needs, over one simplified graph.
+#[must_use]
+pub fn derive_part(chain: &Chain, part: Part) -> Program {
+    functions::part(Graph::simplifying(), chain, part)
 }

@@ -1,71 +1,13 @@
-//! The functions of a crane: derived when one of their kind is first asked for, assembled one by one.
+//! The functions of a crane: a part of them is derived when one of it is first asked for, assembled one by one.
 
 use std::sync::OnceLock;
 
-use crane_codegen::chain::{Analyses, Chain};
-use crane_codegen::mechanics;
-use crane_codegen::program::{FunctionId, Product, Program, RuntimeTrait};
+use crane_codegen::chain::Chain;
+use crane_codegen::mechanics::{self, Part};
+use crane_codegen::program::{FunctionId, Product, Program};
 
 use crate::assemble::TooLarge;
 use crate::routine::Routine;
-
-/// Functions that are derived together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
-    /// Poses, forces, energies: what every crane has.
-    Common,
-    /// Equations of motion.
-    Dynamics,
-    /// Equilibria.
-    Statics,
-    /// Small motions.
-    Modes,
-    /// What joints and sections transmit.
-    InternalForces,
-    /// Derivatives of transforms.
-    Derivatives,
-    /// Derivatives of the dynamics.
-    MotionDerivatives,
-}
-
-impl Group {
-    const COUNT: usize = 7;
-
-    /// The group to which a function belongs.
-    fn of(id: FunctionId) -> Self {
-        match id.runtime_trait() {
-            RuntimeTrait::CraneModel => Group::Common,
-            RuntimeTrait::Dynamics | RuntimeTrait::Implicit => Group::Dynamics,
-            RuntimeTrait::Statics => Group::Statics,
-            RuntimeTrait::Linearise => Group::Modes,
-            RuntimeTrait::InternalForces => Group::InternalForces,
-            RuntimeTrait::TransformDerivatives => Group::Derivatives,
-            RuntimeTrait::MotionDerivatives => Group::MotionDerivatives,
-        }
-    }
-
-    /// The analyses requested from the compiler.
-    fn analyses(self) -> Analyses {
-        let nothing = Analyses {
-            statics: false,
-            dynamics: false,
-            modes: false,
-            internal_forces: false,
-            derivatives: false,
-            motion_derivatives: false,
-            ensemble: false,
-        };
-        match self {
-            Group::Common => nothing,
-            Group::Dynamics => Analyses { dynamics: true, ..nothing },
-            Group::Statics => Analyses { statics: true, ..nothing },
-            Group::Modes => Analyses { modes: true, ..nothing },
-            Group::InternalForces => Analyses { internal_forces: true, ..nothing },
-            Group::Derivatives => Analyses { derivatives: true, ..nothing },
-            Group::MotionDerivatives => Analyses { motion_derivatives: true, ..nothing },
-        }
-    }
-}
 
 /// A product of a function, once it was asked for.
 type OfFunction = OnceLock<Result<Option<Routine>, TooLarge>>;
@@ -75,7 +17,7 @@ type OfFunction = OnceLock<Result<Option<Routine>, TooLarge>>;
 pub struct Library {
     chain: Chain,
     parents: Vec<usize>,
-    programs: [OnceLock<Program>; Group::COUNT],
+    programs: [OnceLock<Program>; Part::ALL.len()],
     routines: [OnceLock<Option<Routine>>; FunctionId::COUNT],
     /// For each of [`Product::ALL`].
     products: [[OfFunction; FunctionId::COUNT]; Product::ALL.len()],
@@ -128,7 +70,7 @@ impl Library {
 
     /// The program with a function.
     fn program(&self, id: FunctionId) -> &Program {
-        let group = Group::of(id);
-        self.programs[group as usize].get_or_init(|| mechanics::derive(&self.chain, group.analyses()))
+        let part = Part::of(id);
+        self.programs[part as usize].get_or_init(|| mechanics::derive_part(&self.chain, part))
     }
 }

@@ -11,7 +11,9 @@ mod statics;
 use std::cell::OnceCell;
 
 use crate::chain::{Analyses, Beam, Body, BodyId, Chain, Group, Section};
-use crate::program::{Argument, Count, Extent, Function, FunctionId, Item, Program, Shape, Struct, Symbol};
+use crate::program::{
+    Argument, Count, Extent, Function, FunctionId, Item, Program, RuntimeTrait, Shape, Struct, Symbol,
+};
 use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
 
 use super::articulated::Effort;
@@ -28,10 +30,91 @@ use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
 use super::{cylinders, drives, effective_mass, energy, newton_euler, pads, points, rotors, transforms};
 
-/// Derives all functions over one graph.
+/// Functions that are derived together, because they share most of their expressions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Poses, forces, loops, energies: what every crane has.
+    Common,
+    /// Equations of motion.
+    Dynamics,
+    /// Systems of implicit steps, and their residual.
+    Systems,
+    /// Stiffness and damping of implicit steps.
+    StepMatrices,
+    /// Equilibria.
+    Statics,
+    /// Small motions.
+    Modes,
+    /// What joints and sections transmit.
+    InternalForces,
+    /// Derivatives of transforms.
+    Derivatives,
+    /// Derivatives of the dynamics.
+    MotionDerivatives,
+}
+
+impl Part {
+    /// All of them, in the order of their functions in programs.
+    pub const ALL: [Part; 9] = [
+        Part::Common,
+        Part::Dynamics,
+        Part::Systems,
+        Part::StepMatrices,
+        Part::Statics,
+        Part::Modes,
+        Part::InternalForces,
+        Part::Derivatives,
+        Part::MotionDerivatives,
+    ];
+
+    /// The part to which a function belongs.
+    #[must_use]
+    pub fn of(id: FunctionId) -> Self {
+        match id.runtime_trait() {
+            RuntimeTrait::CraneModel => Part::Common,
+            RuntimeTrait::Dynamics => Part::Dynamics,
+            RuntimeTrait::Implicit => match id {
+                FunctionId::Factorise | FunctionId::Solve | FunctionId::DynamicResidual => Part::Systems,
+                _ => Part::StepMatrices,
+            },
+            RuntimeTrait::Statics => Part::Statics,
+            RuntimeTrait::Linearise => Part::Modes,
+            RuntimeTrait::InternalForces => Part::InternalForces,
+            RuntimeTrait::TransformDerivatives => Part::Derivatives,
+            RuntimeTrait::MotionDerivatives => Part::MotionDerivatives,
+        }
+    }
+
+    /// Whether analyses request it.
+    fn is_in(self, analyses: Analyses) -> bool {
+        match self {
+            Part::Common => true,
+            Part::Dynamics | Part::Systems | Part::StepMatrices => analyses.dynamics,
+            Part::Statics => analyses.statics,
+            Part::Modes => analyses.modes,
+            Part::InternalForces => analyses.internal_forces,
+            Part::Derivatives => analyses.derivatives,
+            Part::MotionDerivatives => analyses.motion_derivatives,
+        }
+    }
+}
+
+/// Derives the functions of analyses over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
+    of_parts(graph, chain, &|part| part.is_in(analyses))
+}
+
+/// Derives the functions of a part over one graph.
+pub fn part(graph: Graph, chain: &Chain, wanted: Part) -> Program {
+    of_parts(graph, chain, &|part| part == wanted)
+}
+
+fn of_parts(graph: Graph, chain: &Chain, wanted: &dyn Fn(Part) -> bool) -> Program {
     let mut symbols = Model::symbols(chain);
-    let functions = Derivation::new(&graph, chain).functions(analyses, &mut symbols);
+    let derivation = Derivation::new(&graph, chain);
+    let parts = Part::ALL.into_iter().filter(|part| wanted(*part));
+    let functions = parts.flat_map(|part| derivation.part(part, &mut symbols)).collect();
+    drop(derivation);
     Program::new(graph, symbols, functions)
 }
 
@@ -67,31 +150,18 @@ impl<'g> Derivation<'g> {
         Derivation { model, factors, kinematics, inertias, twists, loops: OnceCell::new(), rigid }
     }
 
-    fn functions(&self, analyses: Analyses, symbols: &mut Vec<Symbol>) -> Vec<Function> {
-        let mut functions = self.poses();
-        functions.extend(self.force_functions());
-        functions.extend(self.loop_joints());
-        functions.extend(self.energies());
-        if analyses.dynamics {
-            functions.extend(self.dynamics());
-            functions.extend(self.implicit(symbols));
+    fn part(&self, part: Part, symbols: &mut Vec<Symbol>) -> Vec<Function> {
+        match part {
+            Part::Common => [self.poses(), self.force_functions(), self.loop_joints(), self.energies()].concat(),
+            Part::Dynamics => self.dynamics(),
+            Part::Systems => self.systems(symbols),
+            Part::StepMatrices => self.step_matrices(),
+            Part::Statics => self.statics(),
+            Part::Modes => vec![self.linearise()],
+            Part::InternalForces => self.internal_forces(),
+            Part::Derivatives => self.transform_derivatives(),
+            Part::MotionDerivatives => self.motion_derivatives(),
         }
-        if analyses.statics {
-            functions.extend(self.statics());
-        }
-        if analyses.modes {
-            functions.push(self.linearise());
-        }
-        if analyses.internal_forces {
-            functions.extend(self.internal_forces());
-        }
-        if analyses.derivatives {
-            functions.extend(self.transform_derivatives());
-        }
-        if analyses.motion_derivatives {
-            functions.extend(self.motion_derivatives());
-        }
-        functions
     }
 
     /// All forces except those of rigid drives.
@@ -208,8 +278,8 @@ impl<'g> Derivation<'g> {
         (with_rotors(model, required), trace)
     }
 
-    /// Functions for implicit integration: what a motion requires beyond the forces that act, structured stiffness and damping, and systems with them.
-    fn implicit(&self, symbols: &mut Vec<Symbol>) -> Vec<Function> {
+    /// For implicit integration: what a motion requires beyond the forces that act, and systems with stiffness and damping.
+    fn systems(&self, symbols: &mut Vec<Symbol>) -> Vec<Function> {
         let model = &self.model;
         let solve = || effective_mass::solution(model, &self.kinematics, &self.factors);
         let (solution, trace) = model.graph.recorded(solve);
@@ -225,17 +295,22 @@ impl<'g> Derivation<'g> {
         }));
         let (required, required_trace) = self.inverse_dynamics();
         let residual = required.iter().zip(&self.forces().all()).map(|(required, force)| *required - *force).collect();
-        let mut functions = vec![
+        vec![
             shaped(FunctionId::Factorise, Shape::Factors(factors.len()), factors).by(trace),
             shaped(FunctionId::Solve, Shape::Vector(model.size()), results).by(late_trace),
             self.function(FunctionId::DynamicResidual, residual).by(required_trace),
-        ];
+        ]
+    }
+
+    /// For implicit integration: structured stiffness and damping.
+    fn step_matrices(&self) -> Vec<Function> {
+        let model = &self.model;
         let [stiffness, damping] = self.forces().step_matrices();
         let base: Vec<usize> = model.chain.base.iter().flatten().map(|id| id.0).collect();
         let diagonal =
             |j: usize| [&stiffness, &damping].map(|m| if base.contains(&j) { model.zero() } else { m.at(j, j) });
-        functions
-            .push(self.function(FunctionId::JointStiffnessAndDamping, (0..model.size()).flat_map(diagonal).collect()));
+        let joints = (0..model.size()).flat_map(diagonal).collect();
+        let mut functions = vec![self.function(FunctionId::JointStiffnessAndDamping, joints)];
         if [Kind::Of(Group::Stops), Kind::Of(Group::Friction)].iter().any(|kind| kind.is_in(model.chain))
             || model.chain.has_limited_drives()
         {
