@@ -3,6 +3,9 @@
 //! Where a [compliance c](super::pads::Series) that depends on a coordinate q_k is in series, `∂E/∂c = −½ F²` with the force F at rest: on q_k acts
 //! `½ F² ∂c/∂q_k`, too, and the stiffness is `∂F/∂s J̃ᵀ J̃ + F ∂²s/∂q∂q − ½ F² ∂²c/∂q∂q` with `J̃ = J − F ∂c/∂q`.
 
+use std::borrow::Cow;
+use std::cell::OnceCell;
+
 use super::acts::{Acts, Rest};
 use super::kinematics::Kinematics;
 use super::laws::{At, Law, law};
@@ -11,21 +14,53 @@ use super::pads::Series;
 use super::strains::Strained;
 use super::tangent::Tangent;
 use super::vector::SymmetricMatrix;
-use crate::chain::{Force, Group, Sliding};
+use crate::chain::{Chain, Force, Group, Sliding};
 use crate::symbolic::Expr;
+
+/// The strains of all forces at the present pose, each made when it is first asked for.
+pub struct Strains<'g>(Vec<OnceCell<Pose<'g>>>);
+
+/// A strain at the present pose, and what is in series with it.
+type Pose<'g> = (Strained<'g>, Option<Series<'g>>);
+
+impl<'g> Strains<'g> {
+    pub fn new(chain: &Chain) -> Self {
+        Strains(chain.forces.iter().map(|_| OnceCell::new()).collect())
+    }
+
+    /// Those of a group.
+    fn of(&self, chain: &Chain, group: Group) -> &[OnceCell<Pose<'g>>] {
+        let (before, count) = (chain.forces.partition_point(|force| force.group < group), chain.of(group).len());
+        &self.0[before..before + count]
+    }
+}
 
 /// The forces of a group.
 pub struct Elements<'a, 'g> {
     model: &'a Model<'g>,
     kinematics: &'a Kinematics<'g>,
     forces: &'a [Force],
+    strains: &'a [OnceCell<Pose<'g>>],
+}
+
+/// A chain at the present pose.
+pub type Posed<'a, 'g> = (&'a Model<'g>, &'a Kinematics<'g>, &'a Strains<'g>);
+
+fn pose<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, force: &Force) -> Pose<'g> {
+    let sliding = force.strain.sliding();
+    let series = sliding.and_then(|sliding| Series::new(model, kinematics, sliding));
+    let series = match (sliding, force.spring()) {
+        (Some(Sliding { exact: true, .. }), Some(spring)) => series.map(|series| series.beyond(model, spring)),
+        _ => series,
+    };
+    (Strained::new(model, kinematics, &force.strain), series)
 }
 
 /// A force at the present pose.
 pub struct Element<'a, 'g> {
     pub force: &'a Force,
     pub law: &'a dyn Law,
-    pub strained: Strained<'g>,
+    pub strained: &'a Strained<'g>,
     /// What is in series with it.
     series: Option<Series<'g>>,
 }
@@ -53,22 +88,17 @@ impl<'g> Element<'_, 'g> {
 }
 
 impl<'a, 'g> Elements<'a, 'g> {
-    pub fn new(model: &'a Model<'g>, kinematics: &'a Kinematics<'g>, group: Group) -> Self {
-        Elements { model, kinematics, forces: model.chain.of(group) }
+    pub fn new(posed: Posed<'a, 'g>, group: Group) -> Self {
+        let (model, kinematics, strains) = posed;
+        Elements { model, kinematics, forces: model.chain.of(group), strains: strains.of(model.chain, group) }
     }
 
     /// All of them.
     pub fn all(&self) -> impl Iterator<Item = Element<'a, 'g>> + use<'a, 'g> {
-        let &Elements { model, kinematics, forces } = self;
-        forces.iter().map(move |force| {
-            let strained = Strained::new(model, kinematics, &force.strain);
-            let sliding = force.strain.sliding();
-            let series = sliding.and_then(|sliding| Series::new(model, kinematics, sliding));
-            let series = match (sliding, force.spring()) {
-                (Some(Sliding { exact: true, .. }), Some(spring)) => series.map(|series| series.beyond(model, spring)),
-                _ => series,
-            };
-            Element { force, law: law(&force.law), strained, series }
+        let &Elements { model, kinematics, forces, strains } = self;
+        forces.iter().zip(strains).map(move |(force, kept)| {
+            let (strained, series) = kept.get_or_init(|| pose(model, kinematics, force));
+            Element { force, law: law(&force.law), strained, series: *series }
         })
     }
 
@@ -80,7 +110,7 @@ impl<'a, 'g> Elements<'a, 'g> {
             if let Some((k, effort, [slope, _])) = element.on_series(at) {
                 forces[k] = forces[k] + effort * slope;
             }
-            for (j, column) in element.strained.jacobian {
+            for &(j, column) in &element.strained.jacobian {
                 forces[j] = forces[j] - column * force;
             }
         }
@@ -116,17 +146,17 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
     /// `∂F/∂s Jᵀ J + F ∂²s/∂q∂q`: the stiffness of the material and, since J depends on the pose, that of the geometry.
     fn add_stiffness(&self, rest: &Rest<'g>, tangent: &mut Tangent<'_, 'g>) {
         let (at, model) = (At::rest(self.model, rest.t), self.model);
-        for mut element in self.all() {
+        for element in self.all() {
             let [stiffness, _] = element.slopes(at, model.zero());
             let tension = element.force(at, model.zero());
+            let mut strained = Cow::Borrowed(element.strained);
             if let Some((k, effort, [slope, bend])) = element.on_series(at) {
                 tangent.matrix.add(k, k, -effort * bend);
-                for (_, column) in element.strained.jacobian.iter_mut().filter(|(j, _)| *j == k) {
+                for (_, column) in strained.to_mut().jacobian.iter_mut().filter(|(j, _)| *j == k) {
                     *column = *column - tension * slope;
                 }
             }
-            let Element { force, strained, .. } = element;
-            strained.add_tangent((model, self.kinematics), &force.strain, [tension, stiffness], tangent);
+            strained.add_tangent((model, self.kinematics), &element.force.strain, [tension, stiffness], tangent);
         }
     }
 
@@ -143,7 +173,7 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
         let at = At::now(self.model);
         let linear = self.all().filter(|Element { force, law, .. }| force.coordinate().is_some() && law.is_linear());
         for element in linear {
-            let strained = &element.strained;
+            let strained = element.strained;
             let [by_strain, by_rate] = element.slopes(at, strained.rate(self.model, &self.model.v));
             strained.add_square(by_strain, stiffness);
             strained.add_square(by_rate, damping);

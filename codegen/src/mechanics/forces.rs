@@ -5,8 +5,7 @@
 
 use super::acts::{Acts, Rest, add};
 use super::drives::{self, Drives};
-use super::elements::Elements;
-use super::kinematics::Kinematics;
+use super::elements::{Elements, Posed};
 use super::loads::Loads;
 use super::model::Model;
 use super::supports::Supports;
@@ -59,29 +58,32 @@ pub fn rest_at_start<'g>(model: &Model<'g>) -> Rest<'g> {
 
 /// The forces of a chain, except those of rigid drives, which have no law: they follow from the motion.
 pub struct Forces<'a, 'g> {
-    model: &'a Model<'g>,
-    kinematics: &'a Kinematics<'g>,
+    posed: Posed<'a, 'g>,
 }
 
 impl<'a, 'g> Forces<'a, 'g> {
-    pub fn new(model: &'a Model<'g>, kinematics: &'a Kinematics<'g>) -> Self {
-        Forces { model, kinematics }
+    pub fn new(posed: Posed<'a, 'g>) -> Self {
+        Forces { posed }
+    }
+
+    fn model(&self) -> &'a Model<'g> {
+        self.posed.0
     }
 
     /// The kinds that the chain has.
     pub fn kinds(&self) -> impl Iterator<Item = Kind> {
-        let chain = self.model.chain;
+        let chain = self.model().chain;
         Kind::ALL.into_iter().filter(|kind| kind.is_in(chain))
     }
 
     /// The forces of a kind.
     pub fn of(&self, kind: Kind) -> Box<dyn Acts<'g> + 'a> {
-        let &Forces { model, kinematics } = self;
+        let (model, kinematics, _) = self.posed;
         match kind {
             Kind::Supports => Box::new(Supports { model, kinematics }),
             Kind::Drives => Box::new(Drives { model }),
             Kind::Loads => Box::new(Loads { model, kinematics }),
-            Kind::Of(group) => Box::new(Elements::new(model, kinematics, group)),
+            Kind::Of(group) => Box::new(Elements::new(self.posed, group)),
         }
     }
 
@@ -91,17 +93,17 @@ impl<'a, 'g> Forces<'a, 'g> {
 
     /// Generalized forces of all kinds in motion.
     pub fn all(&self) -> Vec<Expr<'g>> {
-        self.each().fold(self.model.zeros(), |sum, forces| add(&sum, &forces.in_motion()))
+        self.each().fold(self.model().zeros(), |sum, forces| add(&sum, &forces.in_motion()))
     }
 
     /// Generalized forces of all kinds at rest.
     pub fn all_at_rest(&self, rest: &Rest<'g>) -> Vec<Expr<'g>> {
-        self.each().fold(self.model.zeros(), |sum, forces| add(&sum, &forces.at_rest(rest)))
+        self.each().fold(self.model().zeros(), |sum, forces| add(&sum, &forces.at_rest(rest)))
     }
 
     /// Power that all kinds dissipate.
     pub fn dissipation(&self) -> Expr<'g> {
-        self.each().filter_map(|forces| forces.dissipation()).fold(self.model.zero(), |sum, power| sum + power)
+        self.each().filter_map(|forces| forces.dissipation()).fold(self.model().zero(), |sum, power| sum + power)
     }
 
     /// Adds the tangent stiffness of all kinds at rest, without that of oil.
@@ -126,12 +128,12 @@ impl<'a, 'g> Forces<'a, 'g> {
 
     /// `∂F/∂q_j` and `∂F/∂q̇_j` of nonlinear laws on each coordinate at the present state, for implicit steps.
     pub fn nonlinear(&self) -> Vec<[Expr<'g>; 2]> {
-        let mut diagonal = vec![[self.model.zero(); 2]; self.model.size()];
+        let mut diagonal = vec![[self.model().zero(); 2]; self.model().size()];
         self.each().for_each(|forces| forces.add_nonlinear(&mut diagonal));
         diagonal
     }
 
     fn zero_matrix(&self) -> SymmetricMatrix<'g> {
-        SymmetricMatrix::zero(self.model.graph, self.model.size())
+        SymmetricMatrix::zero(self.model().graph, self.model().size())
     }
 }

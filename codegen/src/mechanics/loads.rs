@@ -5,6 +5,7 @@
 
 use super::acts::{Acts, Rest};
 use super::connectors;
+use super::elements::Posed;
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::place::{Along, Place, Pull};
@@ -133,7 +134,8 @@ pub fn sum<'a, 'g: 'a>(actions: impl Iterator<Item = &'a Action<'g>>) -> Option<
 }
 
 /// What loads and connectors exert on each body.
-pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Vec<Action<'g>>> {
+pub fn on_bodies<'g>(posed: Posed<'_, 'g>) -> Vec<Vec<Action<'g>>> {
+    let (model, kinematics, _) = posed;
     let mut actions: Vec<Vec<Action<'g>>> = vec![Vec::new(); model.chain.bodies.len()];
     for load in &model.chain.loads {
         let BodyId(body) = load.body;
@@ -150,7 +152,7 @@ pub fn on_bodies<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Vec<
         let moment = along_own_axes(&load.moment) + model.vector(&load.position).cross(force);
         actions[body].push(Action { along: Along::Fixed(load.position[0].clone()), wrench: [force, moment] });
     }
-    for (Place { body: BodyId(body), along }, Pull { point, force, moment }) in connectors::pulls(model, kinematics) {
+    for (Place { body: BodyId(body), along }, Pull { point, force, moment }) in connectors::pulls(posed) {
         let pose = &kinematics.poses[body];
         let [force, lever] = [force, point - pose.origin].map(|vector| pose.rotation.apply_transposed(vector));
         let moment = moment.map(|moment| pose.rotation.apply_transposed(moment));

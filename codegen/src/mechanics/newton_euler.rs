@@ -4,6 +4,7 @@
 //! any q̈ the forces and moments of the inward sweep are those that the crane transmits.
 
 use super::beam_axis::AxisPoint;
+use super::elements::Posed;
 use super::factors::{Branches, Factor, Reached};
 use super::kinematics::Kinematics;
 use super::loads::{self, Action};
@@ -32,9 +33,10 @@ pub fn inverse_dynamics<'g>(model: &Model<'g>, factors: &[Factor<'g>]) -> Vec<Ex
 
 /// Force and moment that the part beyond each cut exerts on the part before it: the inertia and the weight of everything
 /// beyond, the loads applied to it and the forces of connectors on it.
-pub fn internal_forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
+pub fn internal_forces<'g>(posed: Posed<'_, 'g>, factors: &[Factor<'g>]) -> Vec<Expr<'g>> {
+    let (model, kinematics, _) = posed;
     let motions = outward(model, factors, (&model.v, Some(&model.a)), -model.vector(&model.chain.gravity));
-    let applied = loads::on_bodies(model, kinematics);
+    let applied = loads::on_bodies(posed);
     at_cuts(model, kinematics, factors, (&motions, &applied))
 }
 

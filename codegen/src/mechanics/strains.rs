@@ -24,6 +24,7 @@ use crate::chain::{Attachment, Axis, BodyId, CoordinateId, Line, LinePart, Strai
 use crate::symbolic::Expr;
 
 /// A strain at the present pose.
+#[derive(Clone)]
 pub struct Strained<'g> {
     /// ℓ, m or rad.
     pub length: Expr<'g>,

@@ -43,7 +43,7 @@ impl Derivation<'_> {
             Kind::Loads => Some(function(FunctionId::LoadPower, loads::power(model, kinematics, &self.twists))),
             Kind::Of(Group::Connectors) => {
                 let has_winches = model.chain.connectors().iter().any(|connector| connector.winch().is_some());
-                let of_winches = has_winches.then(|| connectors::winch_power(model, kinematics))?;
+                let of_winches = has_winches.then(|| connectors::winch_power(self.posed()))?;
                 Some(function(FunctionId::WinchPower, of_winches))
             }
             Kind::Supports | Kind::Of(_) => None,

@@ -74,13 +74,13 @@ impl<'g> Derivation<'g> {
 
     /// Lengths and tangents of connectors.
     fn connectors(&self) -> Vec<Function> {
-        let (model, kinematics) = (&self.model, &self.kinematics);
+        let posed = self.posed();
         let mut functions = vec![
-            self.function(FunctionId::ConnectorLengths, connectors::lengths(model, kinematics)),
-            self.function(FunctionId::ConnectorTensions, connectors::tensions(model, kinematics)),
-            self.function(FunctionId::ConnectorJacobians, connectors::jacobians(model, kinematics)),
+            self.function(FunctionId::ConnectorLengths, connectors::lengths(posed)),
+            self.function(FunctionId::ConnectorTensions, connectors::tensions(posed)),
+            self.function(FunctionId::ConnectorJacobians, connectors::jacobians(posed)),
         ];
-        let pieces = connectors::pieces(model);
+        let pieces = connectors::pieces(&self.model);
         if !pieces.is_empty() {
             functions.push(self.function(FunctionId::WinchPieces, pieces));
         }

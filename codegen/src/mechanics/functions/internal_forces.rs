@@ -1,8 +1,9 @@
 //! Forces and moments that joints, sections and the ground transmit, and the section moduli from which the stresses of beams follow.
 
 use super::Derivation;
-use crate::chain::{Beam, Force, Moduli};
+use crate::chain::{Beam, Moduli};
 use crate::mechanics::model::Model;
+use crate::mechanics::place::{Place, Pull};
 use crate::mechanics::{connectors, cylinders, newton_euler, supports};
 use crate::program::{Function, FunctionId};
 use crate::symbolic::Expr;
@@ -11,11 +12,10 @@ use crate::symbolic::Expr;
 const WITHOUT_VALVES: &str = "Force (N) and moment (N m) that the part beyond a cut exerts on the part before it, cut by cut. Cylinders with a \
                               valve are not included: add `cylinder_wrenches` times their forces.";
 
-impl Derivation<'_> {
+impl<'g> Derivation<'g> {
     pub(super) fn internal_forces(&self) -> Vec<Function> {
         let model = &self.model;
-        let (wrenches, trace) =
-            model.graph.recorded(|| newton_euler::internal_forces(model, &self.kinematics, &self.factors));
+        let (wrenches, trace) = model.graph.recorded(|| newton_euler::internal_forces(self.posed(), &self.factors));
         let mut functions = vec![self.function(FunctionId::InternalForces, wrenches).by(trace)];
         if model.chain.has_valves() {
             functions[0].doc = WITHOUT_VALVES;
@@ -50,12 +50,11 @@ impl Derivation<'_> {
     /// What connectors between bodies contribute to the internal forces, each pulling with 1 N.
     fn connector_wrenches(&self) -> Function {
         let (model, kinematics) = (&self.model, &self.kinematics);
-        let of_connector = |connector: &Force| {
-            let pulls = connectors::between_bodies(model, kinematics, &connector.strain);
+        let of_connector = |pulls: Vec<(Place<'g>, Pull<'g>)>| {
             let on_bodies = pulls.into_iter().map(|(place, pull)| (place, pull.about_origin()));
             newton_euler::transmitted(model, kinematics, &self.factors, on_bodies.collect())
         };
-        let wrenches = model.chain.connectors().iter().flat_map(of_connector).collect();
+        let wrenches = connectors::between_bodies(self.posed()).into_iter().flat_map(of_connector).collect();
         self.function(FunctionId::ConnectorWrenches, wrenches)
     }
 }

@@ -18,6 +18,7 @@ use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
 
 use super::articulated::Effort;
 use super::columns::columns;
+use super::elements::{Posed, Strains};
 use super::factors::{Factor, factors};
 use super::forces::{Forces, Kind};
 use super::forward::{self, ForwardInputs, Motion};
@@ -125,6 +126,7 @@ struct Derivation<'g> {
     kinematics: Kinematics<'g>,
     inertias: Inertias<'g>,
     twists: Vec<Twist<'g>>,
+    strains: Strains<'g>,
     loops: OnceCell<LoopEquations<'g>>,
     /// Whether some coordinate is prescribed.
     rigid: bool,
@@ -147,7 +149,8 @@ impl<'g> Derivation<'g> {
         let inertias = Inertias::new(&model, &kinematics);
         let twists = twists(&model, &kinematics);
         let rigid = chain.rigid_drives().next().is_some();
-        Derivation { model, factors, kinematics, inertias, twists, loops: OnceCell::new(), rigid }
+        let strains = Strains::new(chain);
+        Derivation { model, factors, kinematics, inertias, twists, strains, loops: OnceCell::new(), rigid }
     }
 
     fn part(&self, part: Part, symbols: &mut Vec<Symbol>) -> Vec<Function> {
@@ -166,7 +169,11 @@ impl<'g> Derivation<'g> {
 
     /// All forces except those of rigid drives.
     fn forces(&self) -> Forces<'_, 'g> {
-        Forces::new(&self.model, &self.kinematics)
+        Forces::new(self.posed())
+    }
+
+    fn posed(&self) -> Posed<'_, 'g> {
+        (&self.model, &self.kinematics, &self.strains)
     }
 
     fn poses(&self) -> Vec<Function> {

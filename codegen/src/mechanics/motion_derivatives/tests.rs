@@ -1,6 +1,7 @@
 //! Against the plain method: the graph of the residual differentiated in every coordinate and rate.
 
 use crate::chain::{Chain, Step};
+use crate::mechanics::elements::Strains;
 use crate::mechanics::factors::factors;
 use crate::mechanics::forces::Forces;
 use crate::mechanics::inertia::Inertias;
@@ -18,7 +19,7 @@ fn derive(chain: &Chain) -> Program {
         let model = Model::new(&graph, chain);
         let (kinematics, factors) = (Kinematics::new(&model), factors(&model));
         let inertias = Inertias::new(&model, &kinematics);
-        let forces = Forces::new(&model, &kinematics).all();
+        let forces = Forces::new((&model, &kinematics, &Strains::new(chain))).all();
         let required = super::with_rotors(&model, newton_euler::inverse_dynamics(&model, &factors));
         let residual: Vec<_> = required.iter().zip(&forces).map(|(required, force)| *required - *force).collect();
         let mut plain = Vec::new();
