@@ -45,7 +45,7 @@ impl Condition {
     /// The condition at pose `q`, in which drives that hold these positions keep the crane at rest.
     pub fn at(crane: &dyn DynCrane, q: Vec<f64>, positions: &[f64]) -> Self {
         let rest = vec![0.0; q.len()];
-        let wrenches = crane.internal_forces_at(0.0, &q, &rest, &rest);
+        let wrenches = crane.internal_forces_at_rest(0.0, &q);
         let efforts = crane.drive_efforts_holding(0.0, positions, &q);
         let reactions = crane.support_reactions_at(&q, &rest).into_iter().zip(crane.support_gaps_at(&q));
         Self {
@@ -61,7 +61,7 @@ impl Condition {
             feet: reactions.map(|(force, gap)| [force.z, gap]).collect(),
             utilisations_of_friction: crane.friction_utilisations_at(&q),
             stops: crane.stop_efforts_at(&q, &rest),
-            connectors: crane.connector_tensions_at(0.0, &q, &rest).into_iter().map(|tension| tension.force).collect(),
+            connectors: crane.tensions_at_rest(0.0, &q),
             overlaps: crane
                 .stages()
                 .iter()

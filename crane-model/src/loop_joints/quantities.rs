@@ -3,7 +3,7 @@
 use nalgebra::{DVector, Vector3};
 
 use super::{Loops, add_to_wrenches, at_rest, generalized, on_rigid_drives, required};
-use crate::{CylinderInfo, Description, Wrench, dyn_crane::DynCrane, wrench};
+use crate::{ConnectorInfo, CylinderInfo, Description, Tension, Wrench, dyn_crane::DynCrane, wrench};
 
 /// # Panics
 /// If `q`, `v` or `a` does not have as many numbers as the crane has coordinates.
@@ -65,17 +65,59 @@ impl dyn DynCrane + '_ {
 
     /// What the equations of the loop joints transmit at rest at t = 0, N and N m.
     pub fn loop_forces_at_rest(&self, q: &[f64]) -> Vec<f64> {
-        if self.loop_joints().is_empty() { Vec::new() } else { at_rest(self, 0.0, &self.drive_positions_at(0.0), q) }
+        self.loop_forces_holding(0.0, &self.drive_targets_at(0.0), q)
+    }
+
+    /// The same with the drives at given positions, one per drive, and loads and winches as at time `t`.
+    pub fn loop_forces_holding(&self, t: f64, positions: &[f64], q: &[f64]) -> Vec<f64> {
+        if self.loop_joints().is_empty() {
+            return Vec::new();
+        }
+        at_rest(self, t, &self.description().by_coordinate(positions), q)
+    }
+
+    /// Tensions of connectors at rest, N and N m, with winches as at time `t` but standing: a damper of a rope resists the rate of its winch only while
+    /// that turns.
+    pub fn tensions_at_rest(&self, t: f64, q: &[f64]) -> Vec<f64> {
+        // Lengths of 10 m, rounded at 2e-15 m, give rates to 1e-9 m/s over this time, s.
+        const STEP: f64 = 1e-6;
+        let rest = vec![0.0; self.size()];
+        let of_rope = |(rope, tension): (&ConnectorInfo, &Tension)| rope.pieces > 0 && tension.damping > 0.0;
+        let tensions = self.connector_tensions_at(t, q, &rest);
+        let mut forces: Vec<f64> = tensions.iter().map(|tension| tension.force).collect();
+        let winches: Vec<bool> = self.description().connectors.iter().zip(&tensions).map(of_rope).collect();
+        if winches.contains(&true) {
+            let [before, after] = [-STEP, STEP].map(|step| self.connector_tensions_at(t + step, q, &rest));
+            for index in (0..forces.len()).filter(|index| winches[*index]) {
+                // `F = k σ (1 + a σ̇)`: its slope by σ is F/σ, that by σ̇ is k σ a.
+                let [before, after] = [&before, &after].map(|at| at[index].force / at[index].stiffness);
+                let rate = (after - before) / (2.0 * STEP);
+                if rate.is_finite() {
+                    forces[index] -= tensions[index].damping * rate;
+                }
+            }
+        }
+        forces
     }
 
     /// The wrench that the part beyond each cut exerts on the part before it, cut by cut: N and N m. Cylinders with a valve push with
     /// the force that the accelerations require, without friction of bristles, whose states are not known here; loop joints transmit what
     /// the accelerations require.
     pub fn internal_forces_at(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
-        let multipliers = self.loop_forces_required(t, [q, v, a]);
+        self.internal_forces_closed(t, [q, v, a], &self.loop_forces_required(t, [q, v, a]))
+    }
+
+    /// The same at rest, with the drives, loads and winches as at time `t`; their motions stand.
+    pub fn internal_forces_at_rest(&self, t: f64, q: &[f64]) -> Vec<Wrench> {
+        let rest = vec![0.0; q.len()];
+        let multipliers = self.loop_forces_holding(t, &self.drive_targets_at(t), q);
+        self.internal_forces_closed(t, [q, &rest, &rest], &multipliers)
+    }
+
+    fn internal_forces_closed(&self, t: f64, [q, v, a]: [&[f64]; 3], multipliers: &[f64]) -> Vec<Wrench> {
         let pushes =
-            if self.description().has_valves() { self.pushes_required(t, [q, v, a], &multipliers) } else { Vec::new() };
-        self.internal_forces_with(t, [q, v, a], &pushes, &multipliers)
+            if self.description().has_valves() { self.pushes_required(t, [q, v, a], multipliers) } else { Vec::new() };
+        self.internal_forces_with(t, [q, v, a], &pushes, multipliers)
     }
 
     /// What the equations of the loop joints transmit so that the crane has given accelerations; empty without loops.

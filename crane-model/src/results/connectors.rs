@@ -3,16 +3,15 @@
 use crane_quantities::ColumnKind;
 
 use super::{Extremes, Table, column_name, connector_force};
-use crate::{ConnectorInfo, Description, Tension, dyn_crane::DynCrane};
+use crate::{ConnectorInfo, Description, dyn_crane::DynCrane};
 
 /// Ropes that are slack at a pose at rest.
 pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
-    let tensions = crane.connector_tensions_at(0.0, q, &vec![0.0; q.len()]);
-    let connectors = crane.description().connectors.iter().zip(tensions);
-    let what = |(connector, tension): (&ConnectorInfo, Tension)| {
-        let is_slack = connector.is_rope && tension.force == 0.0;
+    let connectors = crane.description().connectors.iter().zip(crane.tensions_at_rest(0.0, q));
+    let what = |(connector, tension): (&ConnectorInfo, f64)| {
+        let is_slack = connector.is_rope && tension == 0.0;
         let slack = is_slack.then(|| format!("rope {} is slack", connector.name));
-        slack.or_else(|| pulls_too_hard(connector, tension.force, ""))
+        slack.or_else(|| pulls_too_hard(connector, tension, ""))
     };
     connectors.filter_map(what).collect()
 }

@@ -78,10 +78,17 @@ impl<'a> Recording<'a> {
 
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
+        let &Sample { t, q, v, x, event_times, .. } = sample;
+        let moment = StateAt { t, q, v, x };
+        let exerted = Exerted::in_motion(self.phases.at(t, event_times), &moment);
+        self.push_exerted(sample, &exerted);
+    }
+
+    fn push_exerted(&mut self, sample: &Sample<'_>, exerted: &Exerted) {
         let &Sample { t, q, v, x, work, dissipated, load_work, event_work, event_times } = sample;
         let mut row = Vec::with_capacity(self.table.columns.len());
-        let energies =
-            push_quantities(self.phases.at(t, event_times), self.extent, &StateAt { t, q, v, x }, &[], &mut row);
+        let present = self.phases.at(t, event_times);
+        let energies = push_quantities(present, self.extent, &StateAt { t, q, v, x }, exerted, &mut row);
         if let Some(energy) = energies.as_ref().map(Energies::total) {
             if self.table.rows.is_empty() {
                 self.energy_at_start = energy;
@@ -105,17 +112,10 @@ impl<'a> Recording<'a> {
     pub fn push_rest(&mut self, t: f64, q: &[f64], event_times: &[f64]) {
         let crane = self.phases.at(t, event_times);
         let (v, x) = (vec![0.0; q.len()], ForceStates::new(crane.description()).holding(crane, t, q));
-        self.push(&Sample {
-            t,
-            q,
-            v: &v,
-            x: &x,
-            work: 0.0,
-            dissipated: 0.0,
-            load_work: 0.0,
-            event_work: 0.0,
-            event_times,
-        });
+        let exerted = Exerted::at_rest(crane, t, q);
+        let sample =
+            Sample { t, q, v: &v, x: &x, work: 0.0, dissipated: 0.0, load_work: 0.0, event_work: 0.0, event_times };
+        self.push_exerted(&sample, &exerted);
     }
 
     /// The row of the last sample; empty without one.
@@ -162,7 +162,9 @@ impl<'a> FleetRecording<'a> {
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
         let &Sample { t, q, v, x, .. } = sample;
-        push_quantities(self.fleet, Extent::Peaks, &StateAt { t, q, v, x }, &[], &mut self.numbers);
+        let moment = StateAt { t, q, v, x };
+        let exerted = Exerted::in_motion(self.fleet, &moment);
+        push_quantities(self.fleet, Extent::Peaks, &moment, &exerted, &mut self.numbers);
     }
 
     /// Number of cranes.
@@ -188,9 +190,7 @@ impl<'a> FleetRecording<'a> {
 /// The quantities at a state of the crane and its oil: all columns of a [`Recording`] except those of its audit, in the order of
 /// [`quantities`].
 pub fn quantities_at(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Vec<f64> {
-    let mut row = Vec::new();
-    push_quantities(crane, Extent::All, &StateAt { t, q, v, x }, &[], &mut row);
-    row
+    quantities_with(crane, &StateAt { t, q, v, x }, &[])
 }
 
 /// The quantities at a state, for conditions of events.
@@ -204,17 +204,57 @@ pub const QUANTITIES: Quantities = Quantities {
 
 /// The same with efforts in addition to those of the drives: what follows from accelerations does not contain them.
 pub(crate) fn quantities_with(crane: &dyn DynCrane, moment: &StateAt<'_>, added: &[f64]) -> Vec<f64> {
-    let mut row = Vec::new();
-    push_quantities(crane, Extent::All, moment, added, &mut row);
+    let (mut row, mut exerted) = (Vec::new(), Exerted::in_motion(crane, moment));
+    exerted.efforts.iter_mut().zip(added).for_each(|(effort, added)| *effort += added);
+    push_quantities(crane, Extent::All, moment, &exerted, &mut row);
     row
 }
 
-/// Appends the quantities at a state to a row, with efforts added to those of the first drives; returns the energies if they are recorded.
+/// What depends on whether motions of drives and winches go on: at rest they stand, and nothing resists their rates.
+struct Exerted {
+    /// Efforts of the drives.
+    efforts: Vec<f64>,
+    /// Rates of the drives' motions.
+    rates: Vec<f64>,
+    /// Tensions of the connectors.
+    tensions: Vec<f64>,
+    /// What the equations of loops transmit.
+    multipliers: Vec<f64>,
+}
+
+impl Exerted {
+    fn in_motion(crane: &dyn DynCrane, moment: &StateAt<'_>) -> Self {
+        let &StateAt { t, q, v, .. } = moment;
+        let has_loops = !crane.loop_joints().is_empty();
+        Exerted {
+            efforts: crane.drive_efforts_with(moment),
+            rates: crane.drive_motions_at(t).into_iter().map(|[_, rate]| rate).collect(),
+            tensions: crane.connector_tensions_at(t, q, v).into_iter().map(|tension| tension.force).collect(),
+            multipliers: if has_loops {
+                force_states::motion_at(crane, moment).multipliers().to_vec()
+            } else {
+                Vec::new()
+            },
+        }
+    }
+
+    fn at_rest(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Self {
+        let positions = crane.drive_targets_at(t);
+        Exerted {
+            efforts: crane.drive_efforts_holding(t, &positions, q),
+            rates: vec![0.0; positions.len()],
+            tensions: crane.tensions_at_rest(t, q),
+            multipliers: crane.loop_forces_holding(t, &positions, q),
+        }
+    }
+}
+
+/// Appends the quantities at a state to a row; returns the energies if they are recorded.
 fn push_quantities(
     crane: &dyn DynCrane,
     extent: Extent,
     moment: &StateAt<'_>,
-    added: &[f64],
+    Exerted { efforts, rates, tensions, multipliers }: &Exerted,
     row: &mut Vec<f64>,
 ) -> Option<Energies> {
     let all = extent == Extent::All;
@@ -226,21 +266,19 @@ fn push_quantities(
     } else {
         row.extend(driven(crane.description()).map(|coordinate| v[coordinate]));
     }
-    let mut efforts = crane.drive_efforts_with(moment);
-    efforts.iter_mut().zip(added).for_each(|(effort, added)| *effort += added);
     let oil = Oil::at(crane, moment);
     let motions = crane.drive_motions_at(t);
-    for ([position, _], effort) in motions.iter().zip(&efforts) {
+    for ([position, _], effort) in motions.iter().zip(efforts) {
         row.extend([position, effort]);
     }
-    let mut cylinders = hydraulics::cylinders_at(crane, q, v, &efforts);
+    let mut cylinders = hydraulics::cylinders_at(crane, q, v, efforts);
     if let Some(oil) = &oil {
         oil.give_states(&mut cylinders);
     }
     row.extend(cylinders.iter().flat_map(cylinders::values));
     match &oil {
         Some(oil) => row.extend(oil.pump_and_spools()),
-        None => row.extend(cylinders::pumps(crane, q, &cylinders, |drive| motions[drive][1])),
+        None => row.extend(cylinders::pumps(crane, q, &cylinders, |drive| rates[drive])),
     }
     if all {
         for (position, velocity) in crane.points_at(q).iter().zip(crane.point_velocities_at(q, v)) {
@@ -270,13 +308,11 @@ fn push_quantities(
     }
     row.extend(frictions);
     row.extend(&x[x.len().saturating_sub(crane.description().bristles.len())..]);
-    for (length, tension) in crane.connector_lengths_at(q, v).into_iter().zip(crane.connector_tensions_at(t, q, v)) {
+    for (length, tension) in crane.connector_lengths_at(q, v).into_iter().zip(tensions) {
         row.extend(length);
-        row.push(tension.force);
+        row.push(*tension);
     }
-    if !crane.loop_joints().is_empty() {
-        row.extend(force_states::motion_at(crane, moment).multipliers());
-    }
+    row.extend(multipliers);
     if !all {
         return None;
     }

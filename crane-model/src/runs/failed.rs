@@ -30,6 +30,8 @@ pub enum Reason {
         /// Why.
         diagnosis: Diagnosis,
     },
+    /// The pose at rest has no derivatives by parameters: forces or coordinates are not determined.
+    Undetermined,
     /// The mass matrix at the start is not positive definite.
     MassMatrix,
     /// The start is not on the loops of the crane.
@@ -81,6 +83,9 @@ impl Reason {
     pub fn advice(&self) -> String {
         match self {
             Reason::Equilibrium { diagnosis, .. } => diagnosis.advice(),
+            Reason::Undetermined => {
+                "of pads and joints that hold the same motion, make one less exact; add a spring to a coordinate that nothing holds".to_owned()
+            }
             Reason::MassMatrix => {
                 "give every link a mass in kg and an inertia in kg m² that are not negligible compared with those of the others".to_owned()
             }
@@ -123,6 +128,9 @@ impl fmt::Display for Reason {
                 let left = if residual.is_finite() { format!(", residual {residual:.1e}") } else { String::new() };
                 write!(f, "statics did not find a stable equilibrium ({equilibrium}{left}){diagnosis}")
             }
+            Reason::Undetermined => f.write_str(
+                "the pose at rest has no derivatives: equations of loops nearly depend on each other, or hardly anything holds a coordinate",
+            ),
             Reason::MassMatrix => {
                 f.write_str("the mass matrix is not positive definite, so accelerations are not defined")
             }

@@ -50,10 +50,13 @@ pub(super) fn iterate(
     let mut norm = scale.norm(&residual);
     let mut history = vec![Iteration { residual: norm, fraction: 0.0 }];
 
+    // Where the last step was taken: one along which nothing holds the crane may end anywhere.
+    let mut left: Option<Tangent> = None;
     let status = loop {
         let stiffness = equations.stiffness(&q);
         let Some(tangent) = Tangent::new(&stiffness, description).filter(|_| norm.is_finite()) else {
-            break Status::Overflow;
+            let free = left.and_then(|tangent| tangent.free_directions(description, Limit::Soft));
+            break free.map_or(Status::Overflow, |coordinates| Status::Singular { coordinates });
         };
         // Whether rounding leaves too much to call the pose an equilibrium is decided at the end of the search.
         let rounding = scale.rounding(equations, &stiffness, &q);
@@ -109,6 +112,7 @@ pub(super) fn iterate(
                 .map_or(Status::NotConverged, |coordinates| Status::Singular { coordinates });
         };
         (q, residual, norm) = (pose, next, trial);
+        left = Some(tangent);
         history.push(Iteration { residual: norm, fraction });
     };
     Equilibrium { status, q: q.as_slice().to_vec(), history, load_steps }

@@ -167,6 +167,14 @@ impl CoordinateKind {
         }
     }
 
+    /// The word for the generalized force.
+    pub const fn force_name(self) -> &'static str {
+        match self {
+            CoordinateKind::Translation => "force",
+            CoordinateKind::Rotation => "torque",
+        }
+    }
+
     /// Unit of the generalized force.
     pub const fn force_unit(self) -> &'static str {
         match self {

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use crane_live::LiveCrane;
 use crane_model::{
-    Cut, DisplayUnit, Tension,
+    Cut, DisplayUnit,
     nalgebra::Vector3,
     results::{CylinderState, Instant, KeyFigure, cautions, cylinders_at},
     sections::StressedSection,
@@ -87,7 +87,7 @@ struct Resting<'a> {
     sections: Vec<StressedSection>,
     reactions: Vec<Vector3<f64>>,
     cylinders: Vec<CylinderState>,
-    tensions: Vec<Tension>,
+    tensions: Vec<f64>,
     efforts: Vec<f64>,
 }
 
@@ -103,7 +103,7 @@ impl<'a> Resting<'a> {
             instant,
             reactions: crane.support_reactions_at(q, &still),
             cylinders: cylinders_at(crane, q, &still, &efforts),
-            tensions: crane.connector_tensions_at(0.0, q, &still),
+            tensions: crane.tensions_at_rest(0.0, q),
             efforts,
         }
     }
@@ -216,7 +216,7 @@ fn series(resting: &[Resting<'_>]) -> Vec<Series> {
         add(&cylinder.name, "pressure, rod's side", "bar", pressure(1));
     }
     for (index, connector) in description.connectors.iter().enumerate().filter(|(_, connector)| !connector.is_pin()) {
-        add(&connector.name, "force", connector.kind.force_unit(), each(&|rest| rest.tensions[index].force));
+        add(&connector.name, "force", connector.kind.force_unit(), each(&|rest| rest.tensions[index]));
     }
     for (index, drive) in description.drives.iter().enumerate() {
         let coordinate = &description.coordinates[drive.coordinate];

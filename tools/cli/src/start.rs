@@ -108,6 +108,7 @@ impl Timing {
                 variable.set(&mut start, value);
                 variable.give(&mut given);
             }
+            let given_there = given.positions.clone();
             // A whole state is closed as it is; of others the rest follows.
             if given.positions.len() == start.q.len() && given.rates.len() == start.v.len() {
                 start.close_state(crane, 0.0)?;
@@ -127,7 +128,17 @@ impl Timing {
             } else {
                 ""
             };
-            start.what = format!("end of {}{held}", file.display());
+            let other = |index: &usize| !given_there.contains(index);
+            let others: Vec<usize> = (0..start.q.len()).filter(other).collect();
+            let rest = others.first().map_or_else(String::new, |first| {
+                let name = &description.coordinates[*first].name;
+                format!(
+                    ", without {} of {} coordinates ({name}, …), which begin as at rest",
+                    others.len(),
+                    start.q.len()
+                )
+            });
+            start.what = format!("end of {}{held}{rest}", file.display());
         }
         let mut asked = Vec::new();
         let columns = quantities(description, crane.loop_joints());

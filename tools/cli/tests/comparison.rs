@@ -146,3 +146,52 @@ fn poses_are_printed_on_request() {
     let whole = text(&["statics", "boom.yaml", "--all"]);
     assert!(whole.contains("boom_1_psi") && whole.contains(" °"), "{whole}");
 }
+
+/// What has one name is one thing, wherever it stands in a spec; what only one crane has, stands alone.
+#[test]
+fn cranes_are_compared_by_names() {
+    let folder = folder("names");
+    let spec = |first: &str, second: &str, more: &str| {
+        let drive = |name: &str| {
+            let stiffness = if name == "column" { "1e6" } else { "4e6" };
+            format!("  - {{coordinate: {name}_psi, stiffness: {stiffness}, damping: 2e4, motion: {{hold: 0}}}}\n")
+        };
+        let foot = |name: &str| {
+            let y = if name == "column" { 1.0 } else { -1.5 };
+            format!("  - {{name: {name}, at: [0, {y}, 0], stiffness: [1e7, 1e7, 1e7], damping: [1e4, 1e4, 1e4]}}\n")
+        };
+        format!(
+            "format: 1\nname: x\nlinks:\n  - {{name: truck, joint: free, mass: 2000, com: [0, 0, 0.5], inertia: {{gyration: [1, 1, 1]}}}}\n  \
+             - {{name: column, placement: {{transform: {{translation: [0, 0, 1]}}}}, joint: revolute, mass: 100, com: [0, 0, 0.5], inertia: {{gyration: [0.2, 0.2, 0.2]}}}}\n  \
+             - {{name: boom, placement: {{transform: {{translation: [0, 0, 1], rotation: {{x: 90 deg}}}}}}, joint: revolute, mass: 200, com: [1, 0, 0], inertia: {{gyration: [0.2, 0.6, 0.6]}}}}\n\
+             supports:\n{}{}  - {{name: front, at: [1, 0, 0], stiffness: [1e7, 1e7, 1e7]}}\ndrives:\n{}{}points:\n{more}  - {{name: tip, link: boom, at: [2, 0, 0]}}\n\
+             run: {{duration: 0.02, output: 0.01}}\n",
+            foot(first),
+            foot(second),
+            drive(first),
+            drive(second)
+        )
+    };
+    fs::write(folder.join("one.yaml"), spec("column", "boom", "")).expect("a file");
+    let other = spec("boom", "column", "  - {name: root, link: boom, at: [0, 0, 0]}\n");
+    fs::write(folder.join("other.yaml"), other.replace("name: x", "name: y")).expect("a file");
+    let both = json(&folder, &["compare", "one.yaml", "other.yaml", "--format", "json"]);
+    let alone = json(&folder, &["statics", "one.yaml", "--format", "json"]);
+    for (table, of) in [("drives", "drive"), ("reactions", "support"), ("pose", "coordinate"), ("points", "point")] {
+        let rows = both[table].as_array().expect(table);
+        assert_eq!(rows.len(), alone[table].as_array().expect(table).len() + usize::from(table == "points"), "{table}");
+        for row in alone[table].as_array().expect(table) {
+            let pair = rows.iter().find(|pair| pair[of] == row[of]).unwrap_or_else(|| panic!("{table}: {row}"));
+            let numbers = |row: &Value| -> Vec<f64> {
+                row.as_object().expect("a row").values().filter_map(Value::as_f64).collect()
+            };
+            let (own, of_both) = (numbers(row), numbers(pair));
+            assert_eq!(of_both.len(), 2 * own.len(), "{pair}");
+            for number in own {
+                // Newton's method ends at 1e-10 of forces of 1e4 N.
+                let same = of_both.iter().filter(|other| (**other - number).abs() < 1e-5).count();
+                assert!(same >= 2, "{table}: {row}, {pair}");
+            }
+        }
+    }
+}

@@ -25,6 +25,8 @@ use crate::{
 const POSES: usize = 200;
 /// What is less than this part of the largest of its unit at rest has no factor: it is not what the crane carries.
 const HARDLY: f64 = 0.05;
+/// What is less than this part of its size in the run is rounding at rest.
+const NOTHING: f64 = 1e-9;
 
 /// Prints the factors of everything that a crane carries.
 pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
@@ -129,7 +131,8 @@ fn rows(crane: &dyn DynCrane, (run, rest): (&Table, &Table), at_rest: &[Instant]
     rows.extend(of_beams);
     for (index, row) in rows.iter_mut().enumerate() {
         let [rest, run] = row.sizes();
-        row.factor = (rest > hardly.get(index).copied().unwrap_or(0.0)).then(|| run / rest);
+        let least = hardly.get(index).copied().unwrap_or(0.0).max(NOTHING * run);
+        row.factor = (rest > least).then(|| run / rest);
     }
     rows
 }

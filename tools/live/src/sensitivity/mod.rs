@@ -240,7 +240,7 @@ fn at_rest(
     }
     let mut source = Source::new(crane);
     let Some(rest) = Rest::new(&mut source, equilibrium.q.clone()) else {
-        return Err(Reason::no_equilibrium(any, equilibrium).of(name));
+        return Err(Reason::Undetermined.of(name));
     };
     let (mut derivatives, mut pose, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     let strength = Strength::new(&mut source, &rest, &mut notes);

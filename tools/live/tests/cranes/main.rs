@@ -37,6 +37,7 @@ mod loop_drives;
 mod loops;
 mod motion_derivatives;
 mod overlaps;
+mod quasi_static;
 mod rates;
 mod rigid_couplings;
 mod rope;

@@ -1,7 +1,7 @@
 //! Cranes in equilibrium, one or several side by side.
 
 use crane_model::{
-    ConnectorInfo, CoordinateInfo, Description, DisplayUnit, Tension,
+    ConnectorInfo, CylinderInfo, DisplayUnit, DriveInfo, LoopEquationInfo, LoopJointInfo, SupportInfo,
     dyn_crane::DynCrane,
     results::{CylinderState, cautions, cylinders_at},
     runs::{Failed, Reason},
@@ -45,18 +45,9 @@ impl<'a> Case<'a> {
         }
     }
 
-    fn coordinates(&self) -> &[CoordinateInfo] {
-        &self.crane.description().coordinates
-    }
-
     /// Velocity at rest.
     fn rest(&self) -> Vec<f64> {
         vec![0.0; self.equilibrium.q.len()]
-    }
-
-    /// Value of `values`, one per coordinate, at the coordinate of this name.
-    fn value(&self, name: &str, values: &[f64]) -> Option<f64> {
-        self.coordinates().iter().position(|coordinate| coordinate.name == name).map(|index| values[index])
     }
 }
 
@@ -98,25 +89,27 @@ pub fn equilibria(cases: &[Case<'_>], bend: f64) -> Report {
         }
     }
     let cases = if cases.iter().all(|case| case.equilibrium.rests()) { cases } else { &[] };
-    report.grid(drives(cases));
-    if let Some(grid) = cylinders(cases) {
-        report.grid(grid);
-    }
-    report.grid(reactions(cases));
-    if let Some(grid) = ground(cases) {
-        report.grid(grid);
-    }
-    if let Some(grid) = friction(cases) {
-        report.grid(grid);
-    }
-    if let Some(grid) = connectors(cases) {
-        report.grid(grid);
-    }
-    if let Some(grid) = loop_joints(cases) {
-        report.grid(grid);
-    }
-    report.grid(points(cases));
-    report.excerpt(pose(cases), 0);
+    report.grid(side_by_side(("drives", "Torques and forces of the drives"), &["drive"], &[VALUE], cases, drives));
+    let optional = |report: &mut Report, grid: Grid| {
+        if !grid.is_empty() {
+            report.grid(grid);
+        }
+    };
+    let named = ["cylinder", "quantity"];
+    optional(&mut report, side_by_side(("cylinders", "Cylinders"), &named, &[VALUE], cases, cylinders));
+    report.grid(side_by_side(("reactions", "Support reactions"), &["support"], AXES, cases, reactions));
+    let on_ground = ("ground", "Pressure on the ground under the plates of supports");
+    optional(&mut report, side_by_side(on_ground, &["support"], &[VALUE], cases, ground));
+    let of_feet =
+        "Friction of feet on the ground: lateral force over the largest that the ground holds; at 100 % a foot slides";
+    optional(&mut report, side_by_side(("friction", of_feet), &["support"], &[VALUE], cases, friction));
+    let of_connectors = "Connectors: lengths, and forces, positive in tension; slips of couplings, angles of pins";
+    let named = ["connector", "quantity"];
+    optional(&mut report, side_by_side(("connectors", of_connectors), &named, &[VALUE], cases, connectors));
+    let (of_loops, named) = (("loop_joints", title_of_loops(cases)), ["joint", "quantity"]);
+    optional(&mut report, side_by_side((of_loops.0, &of_loops.1), &named, &[VALUE], cases, loop_joints));
+    report.grid(side_by_side(("points", "Points of interest"), &["point"], AXES, cases, points));
+    report.excerpt(side_by_side(("pose", "Pose"), &["coordinate"], &[VALUE], cases, pose), 0);
     report
 }
 
@@ -143,221 +136,193 @@ pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
     grid
 }
 
-/// Headings: `first`, a value per case, `unit`.
-fn headings(first: &str, cases: &[Case<'_>]) -> Vec<Heading> {
-    let values = cases.iter().map(|case| Heading::of(case.label, VALUE));
-    [first.into()].into_iter().chain(values).chain(["unit".into()]).collect()
+/// Columns of vectors.
+const AXES: &[&str] = &["x", "y", "z"];
+
+/// A row of a table of one crane: what it is about, its values, and their unit.
+struct Row {
+    words: Vec<String>,
+    values: Vec<Cell>,
+    unit: Cell,
 }
 
-/// The case with the most coordinates, which has all names.
-fn widest<'c, 'a>(cases: &'c [Case<'a>]) -> Option<&'c Case<'a>> {
-    cases.iter().max_by_key(|case| case.coordinates().len())
+impl Row {
+    fn new(words: &[&str], value: Cell, unit: Cell) -> Self {
+        Row { words: words.iter().map(ToString::to_string).collect(), values: vec![value], unit }
+    }
+
+    /// A number in SI units, as people read all numbers of the unit.
+    fn of_unit(words: &[&str], value: f64, unit: &str) -> Self {
+        Row::new(words, Cell::of_unit(value, unit), Cell::unit_of(unit))
+    }
+
+    /// A number in SI units that people read in a unit.
+    fn shown(words: &[&str], value: Option<f64>, unit: &str) -> Self {
+        let value = value.map_or(Cell::Empty, |value| Cell::shown(value, unit));
+        Row::new(words, value, DisplayUnit::of(unit).map_or(unit.into(), Cell::ShownUnit))
+    }
+
+    fn vector<T: Into<Cell>>(word: &str, values: [T; 3], unit: &str) -> Self {
+        Row { values: values.map(Into::into).into(), ..Row::new(&[word], Cell::Empty, unit.into()) }
+    }
+
+    /// Whether both are about one thing: what has one name in two cranes.
+    fn is_about(&self, other: &Row) -> bool {
+        self.words == other.words && self.unit.text() == other.unit.text()
+    }
 }
 
-fn pose(cases: &[Case<'_>]) -> Grid {
-    let mut grid = Grid::with_headings("pose", "Pose", headings("coordinate", cases));
-    for coordinate in widest(cases).map_or(&[][..], Case::coordinates) {
-        let unit = coordinate.kind.unit();
-        let value = |case: &Case<'_>| case.value(&coordinate.name, &case.equilibrium.q);
-        let values = cases.iter().map(|case| value(case).map_or(Cell::Empty, |value| Cell::of_unit(value, unit)));
-        let name = Cell::from(coordinate.name.as_str());
-        let row: Vec<Cell> = [name].into_iter().chain(values).chain([Cell::unit_of(unit)]).collect();
-        grid.row(row);
+/// A table of cranes side by side, by the names of what they have: where one has no such thing, nothing stands.
+fn side_by_side(
+    (key, title): (&'static str, &str),
+    words: &[&str],
+    columns: &[&str],
+    cases: &[Case<'_>],
+    rows: impl Fn(&Case<'_>) -> Vec<Row>,
+) -> Grid {
+    let values = cases.iter().flat_map(|case| columns.iter().map(|column| Heading::of(case.label, column)));
+    let headings = words.iter().map(|&word| word.into()).chain(values).chain(["unit".into()]).collect();
+    let mut grid = Grid::with_headings(key, title, headings);
+    let rows: Vec<Vec<Row>> = cases.iter().map(rows).collect();
+    let mut all: Vec<&Row> = Vec::new();
+    for of_case in &rows {
+        let more: Vec<&Row> = of_case.iter().filter(|row| !all.iter().any(|other| other.is_about(row))).collect();
+        all.extend(more);
+    }
+    for row in all {
+        let of_case = |rows: &Vec<Row>| {
+            let found = rows.iter().find(|other| other.is_about(row));
+            found.map_or_else(|| vec![Cell::Empty; columns.len()], |found| found.values.clone())
+        };
+        let words = row.words.iter().map(|word| word.as_str().into());
+        grid.row(words.chain(rows.iter().flat_map(of_case)).chain([row.unit.clone()]).collect::<Vec<Cell>>());
     }
     grid
 }
 
-fn drives(cases: &[Case<'_>]) -> Grid {
-    let mut grid = Grid::with_headings("drives", "Torques and forces of the drives", headings("drive", cases));
-    let efforts: Vec<Vec<f64>> =
-        cases.iter().map(|case| case.crane.drive_efforts_at_rest(&case.equilibrium.q)).collect();
-    let Some(first) = cases.first() else { return grid };
-    for (index, drive) in first.crane.description().drives.iter().enumerate() {
-        let coordinate = &first.coordinates()[drive.coordinate];
-        let values = efforts.iter().map(|efforts| Cell::from(efforts.get(index).copied()));
-        let unit = coordinate.kind.force_unit();
-        let row: Vec<Cell> = [coordinate.name.as_str().into()].into_iter().chain(values).chain([unit.into()]).collect();
-        grid.row(row);
-    }
-    grid
+fn pose(case: &Case<'_>) -> Vec<Row> {
+    let coordinates = case.crane.description().coordinates.iter().zip(&case.equilibrium.q);
+    coordinates.map(|(info, value)| Row::of_unit(&[&info.name], *value, info.kind.unit())).collect()
+}
+
+fn drives(case: &Case<'_>) -> Vec<Row> {
+    let description = case.crane.description();
+    let efforts = case.crane.drive_efforts_at_rest(&case.equilibrium.q);
+    let row = |(drive, effort): (&DriveInfo, f64)| {
+        let coordinate = &description.coordinates[drive.coordinate];
+        Row::new(&[&coordinate.name], effort.into(), coordinate.kind.force_unit().into())
+    };
+    description.drives.iter().zip(efforts).map(row).collect()
 }
 
 /// Lengths, forces and pressures of the cylinders.
-fn cylinders(cases: &[Case<'_>]) -> Option<Grid> {
-    let first = cases.iter().find(|case| !case.crane.description().cylinders.is_empty())?;
-    let headings = headings("cylinder", cases);
-    let [name, others @ ..] = headings.as_slice() else { return None };
-    let headings = [&[name.clone(), "quantity".into()], others].concat();
-    let mut grid = Grid::with_headings("cylinders", "Cylinders", headings);
-    let of = |case: &Case<'_>| {
-        let q = &case.equilibrium.q;
-        cylinders_at(case.crane, q, &case.rest(), &case.crane.drive_efforts_at_rest(q))
-    };
-    let states: Vec<Vec<CylinderState>> = cases.iter().map(of).collect();
-    for (index, info) in first.crane.description().cylinders.iter().enumerate() {
-        let kind = first.coordinates()[first.crane.description().drives[info.drive].coordinate].kind;
+fn cylinders(case: &Case<'_>) -> Vec<Row> {
+    let (q, description) = (&case.equilibrium.q, case.crane.description());
+    let states = cylinders_at(case.crane, q, &case.rest(), &case.crane.drive_efforts_at_rest(q));
+    let of_one = |(info, state): (&CylinderInfo, CylinderState)| {
+        let kind = description.coordinates[description.drives[info.drive].coordinate].kind;
         let oil = format!("{}/{}", kind.force_unit(), kind.unit());
-        let mut row = |quantity: &str, unit: &str, value: &dyn Fn(&CylinderState) -> Option<f64>| {
-            let values = states.iter().map(|states| states.get(index).and_then(value));
-            let values = values.map(|value| value.map_or(Cell::Empty, |value| Cell::shown(value, unit)));
-            let named: [Cell; 2] = [info.name.as_str().into(), quantity.into()];
-            let unit = DisplayUnit::of(unit).map_or(unit.into(), Cell::ShownUnit);
-            grid.row(named.into_iter().chain(values).chain([unit]).collect::<Vec<Cell>>());
-        };
-        row("length", "m", &|state| Some(state.length));
-        row("extended", "%", &|state| Some(state.extension(info) / info.stroke));
-        row("force", "N", &|state| Some(state.force));
-        row("pressure, piston's side", "bar", &|state| Some(state.pressures[0]));
-        row("pressure, rod's side", "bar", &|state| Some(state.pressures[1]));
+        let row = |quantity, value, unit: &str| Row::shown(&[&info.name, quantity], value, unit);
+        let mut rows = vec![
+            row("length", Some(state.length), "m"),
+            row("extended", Some(state.extension(info) / info.stroke), "%"),
+            row("force", Some(state.force), "N"),
+            row("pressure, piston's side", Some(state.pressures[0]), "bar"),
+            row("pressure, rod's side", Some(state.pressures[1]), "bar"),
+        ];
         if info.bulk_modulus.is_some() {
-            row("stiffness of its oil", &oil, &|state| state.oil_stiffness(info));
+            rows.push(row("stiffness of its oil", state.oil_stiffness(info), &oil));
         }
-    }
-    Some(grid)
+        rows
+    };
+    description.cylinders.iter().zip(states).flat_map(of_one).collect()
 }
 
-fn reactions(cases: &[Case<'_>]) -> Grid {
-    let mut grid = vectors("reactions", "Support reactions", "support", cases);
-    let reactions: Vec<_> =
-        cases.iter().map(|case| case.crane.support_reactions_at(&case.equilibrium.q, &case.rest())).collect();
-    let supports = cases.first().map_or(&[][..], |case| case.crane.description().supports.as_slice());
-    for (index, support) in supports.iter().enumerate() {
-        let forces = reactions.iter().map(|of| of.get(index).map_or([None; 3], |force| (*force).map(Some).into()));
-        grid.row(vector_row(&support.name, forces, "N"));
-    }
-    if !supports.is_empty() {
-        let sums = reactions.iter().map(|of| <[f64; 3]>::from(of.iter().sum::<Vector3<f64>>()));
-        grid.row(vector_row("Σ supports", sums, "N"));
-        grid.row(vector_row("weight", cases.iter().map(|case| case.crane.weight_at(&case.equilibrium.q)), "N"));
-        let is_loaded = |description: &Description| {
-            !description.loads.is_empty() || description.connectors.iter().any(ConnectorInfo::holds_to_world)
-        };
-        if cases.iter().any(|case| is_loaded(case.crane.description())) {
-            let loads = cases.iter().map(|case| case.crane.applied_force_at(0.0, &case.equilibrium.q));
-            grid.row(vector_row("applied loads", loads, "N"));
+fn reactions(case: &Case<'_>) -> Vec<Row> {
+    let (crane, q) = (case.crane, &case.equilibrium.q);
+    let description = crane.description();
+    let reactions = crane.support_reactions_at(q, &case.rest());
+    let named = description.supports.iter().zip(&reactions);
+    let mut rows: Vec<Row> =
+        named.map(|(support, force)| Row::vector(&support.name, <[f64; 3]>::from(*force), "N")).collect();
+    if !rows.is_empty() {
+        rows.push(Row::vector("Σ supports", <[f64; 3]>::from(reactions.iter().sum::<Vector3<f64>>()), "N"));
+        rows.push(Row::vector("weight", crane.weight_at(q), "N"));
+        if !description.loads.is_empty() || description.connectors.iter().any(ConnectorInfo::holds_to_world) {
+            rows.push(Row::vector("applied loads", crane.applied_force_at(0.0, q), "N"));
         }
     }
-    grid
+    rows
 }
 
 /// The pressure of plates on the ground.
-fn ground(cases: &[Case<'_>]) -> Option<Grid> {
-    let supports = cases.first()?.crane.description().supports.as_slice();
-    supports.iter().find_map(|support| support.plate_area)?;
-    let mut grid = Grid::with_headings(
-        "ground",
-        "Pressure on the ground under the plates of supports",
-        headings("support", cases),
-    );
-    let reactions: Vec<_> =
-        cases.iter().map(|case| case.crane.support_reactions_at(&case.equilibrium.q, &case.rest())).collect();
-    for (index, support) in supports.iter().enumerate().filter(|(_, support)| support.plate_area.is_some()) {
-        let pressure = |of: &Vec<Vector3<f64>>| support.pressure(of.get(index)?.z);
-        let cells =
-            reactions.iter().map(|of| pressure(of).map_or(Cell::Empty, |pressure| Cell::of_unit(pressure, "Pa")));
-        let name: Cell = support.name.as_str().into();
-        grid.row([name].into_iter().chain(cells).chain([Cell::unit_of("Pa")]).collect::<Vec<Cell>>());
-    }
-    Some(grid)
+fn ground(case: &Case<'_>) -> Vec<Row> {
+    let reactions = case.crane.support_reactions_at(&case.equilibrium.q, &case.rest());
+    let plates = case.crane.description().supports.iter().zip(reactions);
+    let plates = plates.filter(|(support, _)| support.plate_area.is_some());
+    let row = |(support, force): (&SupportInfo, Vector3<f64>)| {
+        let pressure = support.pressure(force.z).map_or(Cell::Empty, |pressure| Cell::of_unit(pressure, "Pa"));
+        Row::new(&[&support.name], pressure, Cell::unit_of("Pa"))
+    };
+    plates.map(row).collect()
 }
 
 /// How much of its friction each foot on the ground uses.
-fn friction(cases: &[Case<'_>]) -> Option<Grid> {
-    let description = cases.iter().map(|case| case.crane.description()).find(|description| description.has_feet())?;
-    let title =
-        "Friction of feet on the ground: lateral force over the largest that the ground holds; at 100 % a foot slides";
-    let unit = || DisplayUnit::of("%").map_or("%".into(), Cell::ShownUnit);
-    let mut grid = Grid::with_headings("friction", title, headings("support", cases));
-    let used: Vec<_> = cases.iter().map(|case| case.crane.friction_utilisations_at(&case.equilibrium.q)).collect();
-    for (index, support) in description.supports.iter().enumerate().filter(|(_, support)| support.one_sided) {
-        let of_case = |used: &Vec<(usize, f64)>| {
-            used.iter()
-                .find(|(foot, _)| *foot == index)
-                .map_or(Cell::Empty, |(_, used)| Cell::shown(used.min(1.0), "%"))
-        };
-        let name: Cell = support.name.as_str().into();
-        grid.row([name].into_iter().chain(used.iter().map(of_case)).chain([unit()]).collect::<Vec<Cell>>());
+fn friction(case: &Case<'_>) -> Vec<Row> {
+    let description = case.crane.description();
+    if !description.has_feet() {
+        return Vec::new();
     }
-    Some(grid)
+    let used = case.crane.friction_utilisations_at(&case.equilibrium.q);
+    let feet = description.supports.iter().enumerate().filter(|(_, support)| support.one_sided);
+    let row = |(index, support): (usize, &SupportInfo)| {
+        let used = used.iter().find(|(foot, _)| *foot == index).map(|(_, used)| used.min(1.0));
+        Row::shown(&[&support.name], used, "%")
+    };
+    feet.map(row).collect()
 }
 
 /// Lengths and forces of connectors.
-fn connectors(cases: &[Case<'_>]) -> Option<Grid> {
-    let first = cases.iter().find(|case| !case.crane.description().connectors.is_empty())?;
-    let mut headings = headings("connector", cases);
-    headings.insert(1, "quantity".into());
-    let title = "Connectors: lengths, and forces, positive in tension; slips of couplings, angles of pins";
-    let mut grid = Grid::with_headings("connectors", title, headings);
-    let at_rest = |case: &Case<'_>| {
-        let (q, rest) = (&case.equilibrium.q, case.rest());
-        let lengths = case.crane.connector_lengths_at(q, &rest).into_iter().map(|[length, _]| length);
-        lengths.zip(case.crane.connector_tensions_at(0.0, q, &rest)).collect::<Vec<_>>()
-    };
-    let values: Vec<_> = cases.iter().map(at_rest).collect();
-    for (index, connector) in first.crane.description().connectors.iter().enumerate() {
-        let mut row = |quantity: &str, unit: &str, of: fn(&(f64, Tension)) -> f64| {
-            let cell = |values: &Vec<_>| values.get(index).map_or(Cell::Empty, |value| Cell::of_unit(of(value), unit));
-            let words = [connector.name.as_str().into(), quantity.into()];
-            let cells = values.iter().map(cell);
-            grid.row(words.into_iter().chain(cells).chain([Cell::unit_of(unit)]).collect::<Vec<_>>());
-        };
-        row(connector.strain().name(), connector.kind.unit(), |(length, _)| *length);
+fn connectors(case: &Case<'_>) -> Vec<Row> {
+    let (q, rest) = (&case.equilibrium.q, case.rest());
+    let values = case.crane.connector_lengths_at(q, &rest).into_iter().zip(case.crane.tensions_at_rest(0.0, q));
+    let of_one = |(connector, ([length, _], tension)): (&ConnectorInfo, ([f64; 2], f64))| {
+        let row = |quantity, value, unit| Row::of_unit(&[&connector.name, quantity], value, unit);
+        let kind = connector.kind;
         // At rest, nothing rubs.
-        if !connector.is_pin() {
-            row("force", connector.kind.force_unit(), |(_, tension)| tension.force);
-        }
-    }
-    Some(grid)
+        let force = (!connector.is_pin()).then(|| row(kind.force_name(), tension, kind.force_unit()));
+        [row(connector.strain().name(), length, kind.unit())].into_iter().chain(force)
+    };
+    case.crane.description().connectors.iter().zip(values).flat_map(of_one).collect()
 }
 
-/// Forces and moments of the joints that close loops and of rigid couplings.
-fn loop_joints(cases: &[Case<'_>]) -> Option<Grid> {
-    let first = cases.iter().find(|case| !case.crane.loop_joints().is_empty())?;
-    let mut headings = headings("joint", cases);
-    headings.insert(1, "quantity".into());
+fn title_of_loops(cases: &[Case<'_>]) -> String {
     let of_joints =
         "Joints that close loops: what `to` exerts on `from`, in the axes of `from`; rods are positive in tension";
     let of_couplings = "Rigid couplings: what resists the coordinate that follows";
-    let [joints, couplings] =
-        [false, true].map(|couplings| first.crane.loop_joints().iter().any(|joint| joint.is_coupling() == couplings));
-    let title = match (joints, couplings) {
+    let [joints, couplings] = [false, true].map(|couplings| {
+        cases.iter().flat_map(|case| case.crane.loop_joints()).any(|joint| joint.is_coupling() == couplings)
+    });
+    match (joints, couplings) {
         (true, true) => format!("{of_joints}. {of_couplings}"),
         (_, true) => of_couplings.to_owned(),
         (_, false) => of_joints.to_owned(),
-    };
-    let mut grid = Grid::with_headings("loop_joints", title, headings);
-    let values: Vec<_> = cases.iter().map(|case| case.crane.loop_forces_at_rest(&case.equilibrium.q)).collect();
-    let joints = first.crane.loop_joints().iter();
+    }
+}
+
+/// Forces and moments of the joints that close loops and of rigid couplings.
+fn loop_joints(case: &Case<'_>) -> Vec<Row> {
+    let joints = case.crane.loop_joints().iter();
     let equations = joints.flat_map(|joint| joint.equations.iter().map(move |equation| (joint, equation)));
-    for (index, (joint, equation)) in equations.enumerate() {
+    let row = |((joint, equation), force): ((&LoopJointInfo, &LoopEquationInfo), f64)| {
         let quantity = format!("{} {}", equation.what(), equation.direction);
-        let cells = values.iter().map(|values| Cell::from(values.get(index).copied()));
-        let words = [joint.name.as_str().into(), quantity.trim_end().to_owned().into()];
-        grid.row(words.into_iter().chain(cells).chain([equation.force_unit().into()]).collect::<Vec<_>>());
-    }
-    Some(grid)
+        Row::new(&[&joint.name, quantity.trim_end()], force.into(), equation.force_unit().into())
+    };
+    equations.zip(case.crane.loop_forces_at_rest(&case.equilibrium.q)).map(row).collect()
 }
 
-fn points(cases: &[Case<'_>]) -> Grid {
-    let mut grid = vectors("points", "Points of interest", "point", cases);
-    let positions: Vec<_> = cases.iter().map(|case| case.crane.points_at(&case.equilibrium.q)).collect();
-    for (index, name) in
-        cases.first().map_or(&[][..], |case| case.crane.description().points.as_slice()).iter().enumerate()
-    {
-        let places =
-            positions.iter().map(|of| of.get(index).map_or([None; 3], |position| (*position).map(Some).into()));
-        grid.row(vector_row(name, places, "m"));
-    }
-    grid
-}
-
-/// A table of vectors, three columns per case.
-fn vectors(key: &'static str, title: &str, first: &str, cases: &[Case<'_>]) -> Grid {
-    let axes = cases.iter().flat_map(|case| ["x", "y", "z"].map(|axis| Heading::of(case.label, axis)));
-    Grid::with_headings(key, title, [first.into()].into_iter().chain(axes).chain(["unit".into()]).collect())
-}
-
-fn vector_row<T: Into<Cell>>(name: &str, vectors: impl Iterator<Item = [T; 3]>, unit: &str) -> Vec<Cell> {
-    let cells = vectors.flatten().map(Into::into);
-    [name.into()].into_iter().chain(cells).chain([unit.into()]).collect()
+fn points(case: &Case<'_>) -> Vec<Row> {
+    let positions = case.crane.points_at(&case.equilibrium.q);
+    let named = case.crane.description().points.iter().zip(positions);
+    named.map(|(name, position)| Row::vector(name, <[f64; 3]>::from(position), "m")).collect()
 }
