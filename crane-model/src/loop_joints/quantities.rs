@@ -79,7 +79,8 @@ impl dyn DynCrane + '_ {
     /// Tensions of connectors at rest, N and N m, with winches as at time `t` but standing: a damper of a rope resists the rate of its winch only while
     /// that turns.
     pub fn tensions_at_rest(&self, t: f64, q: &[f64]) -> Vec<f64> {
-        // Lengths of 10 m, rounded at 2e-15 m, give rates to 1e-9 m/s over this time, s.
+        // Over this time, s, accelerations of 1 m/s² give rates to 1e-6 m/s, and lengths of 10 m, rounded at 2e-15 m, to 2e-9. Rates that jump have at
+        // their time the value behind it.
         const STEP: f64 = 1e-6;
         let rest = vec![0.0; self.size()];
         let of_rope = |(rope, tension): (&ConnectorInfo, &Tension)| rope.pieces > 0 && tension.damping > 0.0;
@@ -87,11 +88,11 @@ impl dyn DynCrane + '_ {
         let mut forces: Vec<f64> = tensions.iter().map(|tension| tension.force).collect();
         let winches: Vec<bool> = self.description().connectors.iter().zip(&tensions).map(of_rope).collect();
         if winches.contains(&true) {
-            let [before, after] = [-STEP, STEP].map(|step| self.connector_tensions_at(t + step, q, &rest));
+            let after = self.connector_tensions_at(t + STEP, q, &rest);
             for index in (0..forces.len()).filter(|index| winches[*index]) {
                 // `F = k σ (1 + a σ̇)`: its slope by σ is F/σ, that by σ̇ is k σ a.
-                let [before, after] = [&before, &after].map(|at| at[index].force / at[index].stiffness);
-                let rate = (after - before) / (2.0 * STEP);
+                let [now, after] = [&tensions, &after].map(|at| at[index].force / at[index].stiffness);
+                let rate = (after - now) / STEP;
                 if rate.is_finite() {
                     forces[index] -= tensions[index].damping * rate;
                 }

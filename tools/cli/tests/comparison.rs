@@ -195,3 +195,11 @@ fn cranes_are_compared_by_names() {
         }
     }
 }
+
+/// All numbers of a row.
+fn numbers(row: &Value) -> Vec<f64> {
+    match row {
+        Value::Object(fields) => fields.values().flat_map(numbers).collect(),
+        other => other.as_f64().into_iter().collect(),
+    }
+}

@@ -14,13 +14,14 @@ const CRANE: &str = "
 format: 1
 name: moving
 links:
-  - {name: column, joint: revolute, mass: 100, com: [0.5, 0, 0], inertia: {gyration: [0.2, 0.2, 0.2]}}
-  - {name: trolley, on: world, joint: {prismatic: {axis: x}}, mass: 300, com: [0, 0, 0], inertia: {gyration: [0.2, 0.2, 0.2]}}
-  - {name: weight, on: world, placement: {transform: {translation: [5, 0, 0]}}, joint: {prismatic: {axis: z}}, mass: 500, com: [0, 0, 0], inertia: {gyration: [0.2, 0.2, 0.2]}}
+  - {name: frame, mass: 10, com: [0, 0, 0], inertia: {gyration: [0.2, 0.2, 0.2]}}
+  - {name: column, on: frame, joint: revolute, mass: 100, com: [0.5, 0, 0], inertia: {gyration: [0.2, 0.2, 0.2]}}
+  - {name: trolley, on: frame, joint: {prismatic: {axis: x}}, mass: 300, com: [0, 0, 0], inertia: {gyration: [0.2, 0.2, 0.2]}}
+  - {name: weight, on: frame, placement: {transform: {translation: [5, 0, 0]}}, joint: {prismatic: {axis: z}}, mass: 500, com: [0, 0, 0], inertia: {gyration: [0.2, 0.2, 0.2]}}
 connectors:
-  - {name: hoist, from: {at: [5, 0, 10]}, to: {link: weight, at: [0, 0, 0]}, law: {rope: {stiffness: 2e6, damping: 0.4, motion: {speed: {from: 8, speed: -0.5}}}}}
+  - {name: hoist, from: {at: [5, 0, 10]}, to: {link: weight, at: [0, 0, 0]}, law: {rope: {stiffness: 2e6, damping: 0.4, motion: {speed: {from: 8, rate: -0.5}}}}}
 drives:
-  - {coordinate: column_psi, stiffness: 1e6, damping: 2e4, motion: {speed: {from: 0, speed: 0.5}}}
+  - {coordinate: column_psi, stiffness: 1e6, damping: 2e4, motion: {speed: {from: 0, rate: 0.5}}}
   - {coordinate: trolley_x, rigid: true, motion: {quintic: {from: 0, to: 2, duration: 4}}}
 guess: {weight_z: 2}
 run: {duration: 4, output: 0.25}
