@@ -70,6 +70,9 @@ impl NoCriticalLoad {
             }
             Self::Never { critical: Critical::Tipping } => "no load was found with which the crane stands".to_owned(),
             Self::Beyond { load } => format!("not with up to {load} {unit}"),
+            Self::Otherwise { load, status: Status::Converged } => {
+                format!("with more than {load:.1} {unit} the crane gives way, and rests elsewhere")
+            }
             Self::Otherwise { load, status } => {
                 format!("with more than {load:.1} {unit} the crane does not rest, for another reason: {status}")
             }

@@ -7,10 +7,7 @@ use super::{
     rating::{LoadSearch, Posed},
     search::{ALONG, Range},
 };
-use crate::{
-    dyn_crane::DynCrane,
-    statics::{RestSearch, Status},
-};
+use crate::{dyn_crane::DynCrane, statics::Status};
 
 /// Relative accuracy of a factor.
 const ACCURACY: f64 = 1e-6;
@@ -75,8 +72,7 @@ pub fn load_factor(crane: &mut dyn DynCrane, parameter: usize) -> Option<LoadFac
             break;
         };
         let more = best.load * (1.0 + A_LITTLE);
-        let set = posed.crane.set_parameter(parameter, more).is_ok();
-        let near = RestSearch { crane: posed.crane, positions: &positions }.find_near(&best.at.q).filter(|_| set);
+        let near = posed.find_next([best.load, more], &best.at.q);
         let status = near.as_ref().map_or(Status::NotConverged, |found| found.status.clone());
         let beyond = (status != Status::Converged).then_some(status);
         followed = Some(Followed { factor: best.load, beyond });

@@ -2,7 +2,7 @@
 //!
 //! A pose is given by the positions of the drives; whatever they do not hold, such as a hanging load or a flexible beam, follows from
 //! equilibrium. The load of a pose is the largest one for which the crane rests within all [`Limits`] with it and with every smaller load,
-//! down to the minimum.
+//! down to the minimum, on one path of poses: a crane that snaps through to another rest has reached its end.
 //!
 //! Where moments, stresses and efforts grow with the load, that is the maximum load overall. A crane that needs a load to be within its
 //! limits, such as one that its counterweight tips over, has no rating.

@@ -75,8 +75,12 @@ pub(super) struct LoadSearch<'a> {
 
 /// Shortest step between loads with which the crane rests, as a fraction of the way.
 const SHORTEST: f64 = 1.0 / 64.0;
-/// Most steps of Newton's method to a pose nearby: three to five are usual.
-const CLOSE: usize = 6;
+/// Parts of a stride at which the stiffness is looked at.
+const BETWEEN: [f64; 5] = [0.75, 0.5, 0.25, 0.125, 0.0625];
+/// How many times less than at both ends of a stride `det K` may be in between.
+const DIP: f64 = 4.0;
+/// A way back ends where it began up to this fraction of its length: Newton's method is far more exact, and paths are further from each other.
+const CLOSE: f64 = 1e-3;
 
 impl Posed<'_> {
     /// The crane at rest with a value of the load's parameter, wherever it is found. `near`: positions of the drives, and the pose there.
@@ -87,20 +91,38 @@ impl Posed<'_> {
         found.or_else(|| near.and_then(|_| self.condition(search.find(None))))
     }
 
-    /// The rest with a value of the load's parameter, near a pose.
-    fn find_near(&mut self, value: f64, q: &[f64]) -> Option<Equilibrium> {
+    /// Statics with a value of the load's parameter.
+    fn with_load(&mut self, value: f64) -> Option<RestSearch<'_>> {
         self.crane.set_parameter(self.load, value).ok()?;
-        RestSearch { crane: self.crane, positions: self.positions }.find_near(q)
+        Some(RestSearch { crane: self.crane, positions: self.positions })
     }
 
-    /// The crane at rest with the second load, on the path of its pose with the first one: a rest that takes Newton's method more than [`CLOSE`] steps may be on
-    /// another path, beyond the end of this one, and is approached in shorter steps.
-    fn follow_load(&mut self, [from, to]: [f64; 2], begin: &Condition) -> Option<Condition> {
-        let found = self.find_near(to, &begin.q)?;
-        if found.steps() <= CLOSE {
-            return self.condition(found);
+    /// The rest with the second load that Newton's method finds from the rest `begin` with the first one, if it lies on the path of that one: a stride may pass the
+    /// end of a path and lead to another one, which may even lead back.
+    ///
+    /// On a path the stiffness K is positive definite; between two paths it is not, as the energy has a pass there. Both are looked at along the straight line, most closely
+    /// near its beginning, since a crane that snaps through goes far. `det K` tells a pass between two places, however little of the motion it is: it dips. Besides,
+    /// Newton's method contracts from the first step on, or the way back ends where it began. What does not hold for a bent path holds in shorter strides.
+    pub(super) fn find_next(&mut self, [from, to]: [f64; 2], begin: &[f64]) -> Option<Equilibrium> {
+        let found = self.with_load(to)?.find_near(begin)?;
+        if found.steps() <= 1 {
+            return Some(found);
         }
-        self.walk_load([from, to], begin.clone(), CLOSE)
+        let between = |part: f64| begin.iter().zip(&found.q).map(|(a, b)| a + part * (b - a)).collect::<Vec<f64>>();
+        let mut stiffness = |part: f64| self.with_load(from + part * (to - from))?.stiffness_at(&between(part));
+        let least = stiffness(0.0)?.min(stiffness(1.0)?) - DIP.ln();
+        if BETWEEN.iter().any(|part| stiffness(*part).is_none_or(|between| between < least)) {
+            return None;
+        }
+        if !found.contracts() {
+            let back = self.with_load(from)?.find_near(&found.q)?;
+            let distance = |q: &[f64]| begin.iter().zip(q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            if distance(&back.q) > CLOSE * distance(&found.q) {
+                return None;
+            }
+        }
+        self.with_load(to)?;
+        Some(found)
     }
 
     /// The crane at rest as statics found it, if it stands there.
@@ -111,27 +133,22 @@ impl Posed<'_> {
         is_held.then_some(condition)
     }
 
-    /// The crane at rest with the load `to`, from its pose with the load `from`, in steps between which it rests.
+    /// The crane at rest with the load `to`, on the path of its pose with the load `from`, in steps between which it rests.
     pub(super) fn change_load(&mut self, from: f64, to: f64, begin: Condition) -> Option<Condition> {
-        self.walk_load([from, to], begin, usize::MAX)
-    }
-
-    /// The same in steps that take Newton's method at most so many of its own.
-    fn walk_load(&mut self, [from, to]: [f64; 2], begin: Condition, most: usize) -> Option<Condition> {
-        let mut step = |at: &Condition, [_, part]: [f64; 2]| {
-            let value = if part < 1.0 { from + part * (to - from) } else { to };
-            let found = self.find_near(value, &at.q).filter(|found| found.steps() <= most)?;
+        let at = |part: f64| if part < 1.0 { from + part * (to - from) } else { to };
+        let mut step = |begin: &Condition, parts: [f64; 2]| {
+            let found = self.find_next(parts.map(at), &begin.q)?;
             self.condition(found)
         };
         advance(begin, [SHORTEST, 1.0], &mut step)
     }
 
-    /// The largest load from that of the trial `first` on, and what governs: trials begin at the pose with a smaller load, and a rest beyond a load
-    /// with which the crane does not rest nearby does not count.
+    /// The largest load from that of the trial `first` on, and what governs: trials begin at the pose with a smaller load, and
+    /// only rests on its path count.
     pub(super) fn find_largest(&mut self, first: Trial, search: &LoadSearch<'_>) -> (Option<Trial>, Option<Limit>) {
         largest(first, &search.range, &mut |load, near| {
-            let at = self.follow_load([near.load, load].map(|load| search.factor * load), &near.at)?;
-            Some(self.trial(load, at, search))
+            let next = self.find_next([near.load, load].map(|load| search.factor * load), &near.at.q)?;
+            Some(self.trial(load, self.condition(next)?, search))
         })
     }
 

@@ -54,7 +54,7 @@ pub(super) const CHART: f64 = 1e-6;
 const LEAST: f64 = 1e-9;
 /// Maximum number of trial loads: the secant method takes about five, bisection about thirty to forty.
 const MOST_TRIALS: usize = 100;
-/// Part of the range at which a load with which the crane did not rest is tried once more, from the pose of a load nearby.
+/// Where the crane did not rest after a stride, or not on its path, its load is tried once more when only this part of the stride is left.
 const NEARBY: f64 = 0.02;
 /// Remaining margin up to which tipping, a drive or a foot counts as the reason why a crane does not rest with more load: the margin
 /// falls faster as the crane gives way.
@@ -82,8 +82,8 @@ pub(super) fn largest(
     let mut within = first;
     // The smallest load beyond a limit, with its trial if the crane rests.
     let mut beyond: Option<(f64, Option<Trial>)> = None;
-    // Whether the crane did not rest with a load beyond from the pose of a load nearby either.
-    let mut confirmed = false;
+    // The load from which the crane did not come to rest with the one beyond.
+    let mut failed_from = least;
     // How far the last two trials were from those before them.
     let mut strides = [f64::INFINITY; 2];
     for turn in 0..MOST_TRIALS {
@@ -108,10 +108,7 @@ pub(super) fn largest(
                 let next = if turn == 0 && range.guess > within.load { range.guess } else { next };
                 next.clamp(within.load, within.load + step.max(range.guess - within.load)).min(range.greatest)
             }
-            Some((high, None)) if !confirmed && high - within.load <= NEARBY * (high - least) => {
-                confirmed = true;
-                *high
-            }
+            Some((high, None)) if high - within.load <= NEARBY * (high - failed_from) => *high,
             Some((high, tried)) => {
                 let chord =
                     tried.as_ref().and_then(|trial| crossing(&within.point(), &trial.point())).map(|(at, _)| at);
@@ -133,11 +130,11 @@ pub(super) fn largest(
                     return (Some(found), None);
                 }
                 if beyond.as_ref().is_some_and(|(load, _)| found.load >= *load) {
-                    (beyond, confirmed) = (None, false);
+                    beyond = None;
                 }
                 within = found;
             }
-            other => beyond = Some((next, other)),
+            other => (beyond, failed_from) = (Some((next, other)), within.load),
         }
     }
     match &beyond {

@@ -32,6 +32,19 @@ impl Equilibrium {
         self.history.len().saturating_sub(1)
     }
 
+    /// Whether the first two steps of Newton's method were whole ones, and each left a quarter of the residual on average, or less.
+    ///
+    /// Just that much is left at a double root, where a path ends, and more beyond; by the theorem of Newton and Kantorovich an equilibrium with less is the one nearby:
+    /// P. Deuflhard, Newton Methods for Nonlinear Problems, Springer 2004, section 5.1.
+    pub(crate) fn contracts(&self) -> bool {
+        match self.history.as_slice() {
+            [begin, first, second, ..] => {
+                first.fraction == 1.0 && second.fraction == 1.0 && second.residual <= begin.residual / 16.0
+            }
+            _ => true,
+        }
+    }
+
     /// Whether `q` is a stable equilibrium.
     pub fn is_stable(&self) -> bool {
         self.status == Status::Converged

@@ -1,6 +1,6 @@
 //! The pose at rest with the drives at given positions, for load charts, critical loads and sensitivities: where statics finds it.
 
-use super::{Equilibrium, Settings, guess::guess_with};
+use super::{Equilibrium, Problem, Settings, guess::guess_with};
 use crate::{DriveInfo, dyn_crane::DynCrane};
 
 /// Newton's method alone: where it fails from a pose, the crane does not rest nearby. What is near takes three to five iterations.
@@ -27,6 +27,11 @@ impl RestSearch<'_> {
     /// The pose at rest near the pose `q`, by Newton's method alone: as a crane moves if a little changes slowly.
     pub fn find_near(&self, q: &[f64]) -> Option<Equilibrium> {
         Some(self.search(q, &NEWTON)).filter(Equilibrium::is_stable)
+    }
+
+    /// [`Problem::stiffness_at`] a pose.
+    pub(crate) fn stiffness_at(&self, q: &[f64]) -> Option<f64> {
+        Problem::of(self.crane).holding(self.positions).stiffness_at(q)
     }
 
     /// The pose at rest, or how the search from the guess ended. `near`: positions of the drives, and the pose in which the crane rests there.

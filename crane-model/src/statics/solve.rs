@@ -80,14 +80,36 @@ impl<'a> Problem<'a> {
     /// # Panics
     /// If the pose or the positions are not as many numbers as the crane has coordinates or drives.
     pub fn solve(&self) -> Equilibrium {
-        let crane = &*self.crane;
-        let mut equations = match self.positions {
-            Some(positions) => Equations::holding(crane, self.t, positions),
-            None => Equations::at(crane, self.t),
-        };
+        let mut equations = self.equations();
         match self.from {
             Some(q) => search(&mut equations, q, &self.settings),
-            None => search(&mut equations, &guess_dyn(crane), &self.settings),
+            None => search(&mut equations, &guess_dyn(&*self.crane), &self.settings),
+        }
+    }
+
+    /// `ln det K` at the pose `q`, in equilibrium or not, of the factors of Cholesky, which are a tenth of the work of a Newton step; `None` if a direction has a
+    /// negative stiffness, and −∞ if one has none.
+    pub(super) fn stiffness_at(&self, q: &[f64]) -> Option<f64> {
+        let mut equations = self.equations();
+        let mut pose = DVector::from_column_slice(q);
+        equations.prescribe(pose.as_mut_slice());
+        if !equations.begin(&mut pose) {
+            return None;
+        }
+        let (stiffness, description) = (equations.stiffness(&pose), self.crane.description());
+        match stiffness.clone().cholesky() {
+            Some(factors) => Some(factors.ln_determinant()),
+            None => Tangent::new(&stiffness, description)
+                .filter(|tangent| !tangent.has_negative_direction(description))
+                .map(|_| f64::NEG_INFINITY),
+        }
+    }
+
+    fn equations(&self) -> Equations<'_> {
+        let crane = &*self.crane;
+        match self.positions {
+            Some(positions) => Equations::holding(crane, self.t, positions),
+            None => Equations::at(crane, self.t),
         }
     }
 }

@@ -210,6 +210,11 @@ impl Tangent {
         (!coordinates.is_empty()).then_some(coordinates)
     }
 
+    /// Whether a direction has a negative stiffness.
+    pub(super) fn has_negative_direction(&self, names: &Description) -> bool {
+        self.negative_direction(names).is_some()
+    }
+
     /// Coordinates of the direction of the most negative stiffness, if there is one.
     fn negative_direction(&self, names: &Description) -> Option<Vec<Text>> {
         let is_definite = |factors: &Factors| matches!(factors.kind, Kind::Definite(_) | Kind::Large(_));

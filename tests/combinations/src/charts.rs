@@ -94,13 +94,20 @@ fn limits_nothing(crane: &LiveCrane, load: usize) -> Option<String> {
         Envelope { axes: Axes::default(), load, loads: [loads[0], GREATEST], limits: limits.clone(), factor: 1.0 };
     let Rating { load: Some(rated), governing, loaded: Some(loaded), .. } = rate(crane, &asked)? else { return None };
     let mut crane = crane.clone();
-    let mut beyond = |value: f64| {
+    let mut rest = |value: f64, near: &[f64]| {
         crane.set_parameter(load, value).ok()?;
         let whole: &dyn DynCrane = &crane;
         let positions: Vec<f64> = whole.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
-        let found = RestSearch { crane: whole, positions: &positions }.find_near(&loaded.q)?;
-        let limits = Condition::at(whole, found.q, &positions).exceeded(whole, &limits);
-        Some(limits.into_iter().map(|margin| margin.limit).collect::<Vec<Limit>>())
+        let found = RestSearch { crane: whole, positions: &positions }.find_near(near)?;
+        let limits = Condition::at(whole, found.q.clone(), &positions).exceeded(whole, &limits);
+        Some((found.q, limits.into_iter().map(|margin| margin.limit).collect::<Vec<Limit>>()))
+    };
+    let mut beyond = |value: f64| {
+        let (q, limits) = rest(value, &loaded.q)?;
+        // A crane that snaps through rests elsewhere, from where less load leads to another pose.
+        let (back, _) = rest(rated, &q)?;
+        let distance = |q: &[f64]| q.iter().zip(&loaded.q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        (distance(&back) <= 0.1 * distance(&q)).then_some(limits)
     };
     if let Some(limit) = beyond(rated * (1.0 - BEYOND)).and_then(|limits| limits.first().copied()) {
         return Some(format!("{rated} kg is the largest load, and with less the crane is beyond {limit:?}"));

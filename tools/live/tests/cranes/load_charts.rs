@@ -9,8 +9,8 @@ use crane_model::DriveInfo;
 use crane_model::dyn_crane::{DynCrane, DynModel};
 use crane_model::dynamics::Settings;
 use crane_model::envelope::{
-    Axes, Axis, Coverage, Critical, Envelope, Execution, Limit, Limits, PartLimit, Rating, Varied, critical_load,
-    only_mass, range_of_loads,
+    Axes, Axis, Coverage, Critical, Envelope, Execution, Followed, Limit, Limits, LoadFactor, PartLimit, Rating,
+    Varied, critical_load, load_factor, only_mass, range_of_loads,
 };
 use crane_model::results::{cautions, cylinders_at};
 use crane_model::runs::{Start, record};
@@ -519,27 +519,63 @@ fn what_stands_on_its_head_is_followed_from_the_beginning() {
     assert!(found.is_stable() && ((found.q[0] + found.q[1]).sin() + 1.0).abs() < 1e-12, "{:?}", found.q);
 }
 
-/// A load on two slanting springs, which snaps through where `P = 2 k (ℓ₀ − ℓ) z/ℓ` is greatest: it rests below with any load beyond, but its path ends there.
+/// A load on two slanting springs of height h, which snaps through where `P = 2 k (ℓ₀ − ℓ) z/ℓ + c (h − z)` is greatest: it rests below with any load beyond, but its path
+/// ends there. A third spring c pulls up, so that without a load there is no rest below, and the way back leads to the path; a heavy base gives way
+/// far more than the load snaps. Weight and loads together end at the same load.
 #[test]
 fn a_load_that_snaps_through_does_not_count() {
-    const STIFFNESS: f64 = 1e5;
-    const HEIGHT: f64 = 0.2;
-    let spring = |name: &str, x: f64| {
-        format!(
-            "{{name: {name}, from: {{link: cart, at: [{x}, 0, 0]}}, to: {{link: plate, at: [0, 0, 0]}}, law: {{spring: {{stiffness: {STIFFNESS}, length: {}}}}}}}",
-            1.0_f64.hypot(HEIGHT)
-        )
-    };
-    let crane = crane(&format!(
-        "format: 1\nname: toggle\nparameters: {{payload: {{value: 1, unit: kg}}}}\nlinks:\n- {{name: cart, joint: {{prismatic: {{axis: x}}}}, mass: 5, com: [0, 0, 0]}}\n\
-         - {{name: plate, joint: {{prismatic: {{axis: z}}}}, mass: payload, com: [0, 0, 0]}}\n\
-         drives: [{{coordinate: cart_x, rigid: true, motion: {{hold: 0}}}}]\nguess: {{plate_z: {HEIGHT}}}\nconnectors: [{}, {}]\n",
-        spring("left", -1.0),
-        spring("right", 1.0)
-    ));
-    let carried = |z: f64| 2.0 * STIFFNESS * (1.0_f64.hypot(HEIGHT) - 1.0_f64.hypot(z)) * z / 1.0_f64.hypot(z);
-    let expected = (0..20_000).map(|k| carried(f64::from(k) * 1e-5)).fold(0.0, f64::max) / GRAVITY;
-    let rating = &chart(&crane, 0, &[0.0], Limits::none(crane.description()), 1.0)[0];
-    assert_eq!(rating.governing, Some(Limit::Equilibrium));
-    assert_close("the load that snaps through", rating.load.expect("it rests"), expected, ACCURACY);
+    /// Part of the softest stiffness that the third spring takes away, payload, and mass and stiffness of the base.
+    type Toggle = ([f64; 3], f64, [f64; 2]);
+    let cases: [Toggle; 6] = [
+        ([0.2, 1e5, 0.0], 1.0, [1e3, 1e6]),
+        ([0.2, 1e5, 0.0], 10.0, [1e3, 1e6]),
+        ([0.2, 1e5, 0.5], 10.0, [1e3, 1e6]),
+        // Only the determinant tells: a snap of centimetres on the way.
+        ([0.07, 4e4, 0.9], 1.0, [30.0, 2e4]),
+        ([0.06, 3e4, 0.85], 0.01, [400.0, 3e4]),
+        // Only the way back tells.
+        ([0.038, 2.7e4, 0.8], 0.1, [4e3, 3e6]),
+    ];
+    for ([height, stiffness, part], payload, [mass, base]) in cases {
+        let length = 1.0_f64.hypot(height);
+        let lift = part * 2.0 * stiffness * (length - 1.0);
+        let spring = |name: &str, [x, z]: [f64; 2], stiffness: f64, length: f64| {
+            format!(
+                "- {{name: {name}, from: {{link: base, at: [{x}, 0, {z}]}}, to: {{link: plate, at: [0, 0, 0]}}, law: {{spring: {{stiffness: {stiffness}, length: {length}}}}}}}\n"
+            )
+        };
+        let crane = crane(&format!(
+            "format: 1\nname: toggle\nparameters: {{payload: {{value: {payload}, unit: kg}}}}\nlinks:\n\
+             - {{name: cart, joint: {{prismatic: {{axis: x}}}}, mass: 5, com: [0, 0, 0]}}\n\
+             - {{name: base, joint: {{prismatic: {{axis: z}}}}, mass: {mass}, com: [0, 0, 0]}}\n\
+             - {{name: plate, joint: {{prismatic: {{axis: z}}}}, mass: payload, com: [0, 0, 0]}}\n\
+             drives: [{{coordinate: cart_x, rigid: true, motion: {{hold: 0}}}}, {{coordinate: base_z, stiffness: {base}, motion: {{hold: 0}}}}]\n\
+             guess: {{plate_z: {height}}}\nconnectors:\n{}{}{}",
+            spring("left", [-1.0, 0.0], stiffness, length),
+            spring("right", [1.0, 0.0], stiffness, length),
+            if lift > 0.0 { spring("lift", [0.0, 50.0], lift, 50.0 - height) } else { String::new() }
+        ));
+        let carried =
+            |z: f64| 2.0 * stiffness * (length - 1.0_f64.hypot(z)) * z / 1.0_f64.hypot(z) + lift * (height - z);
+        // The first greatest one on the way down.
+        let way: Vec<f64> = (0..=20_000).map(|k| carried(height * (1.0 - f64::from(k) / 20_000.0))).collect();
+        let end = (1..way.len()).find(|&k| way[k] < way[k - 1]).expect("an end");
+        let expected = way[end - 1] / GRAVITY;
+        for greatest in [2.0 * expected, 5.0 * expected, 100.0 * expected, range_of_loads(&crane, 0, None)[1]] {
+            let of_both = [0.0, 0.1];
+            let limits = Limits::none(crane.description());
+            for rating in chart_between([1e-3 * expected, greatest], &crane, 0, &of_both, limits, 1.0) {
+                assert_eq!(rating.governing, Some(Limit::Equilibrium), "{height} m, up to {greatest} kg");
+                // A heavy base leaves 1e-9 of its mass.
+                let tolerance = ACCURACY + 2e-9 * mass / expected;
+                assert_close("the load that snaps through", rating.load.expect("it rests"), expected, tolerance);
+            }
+        }
+        let (mut crane, parameter) = crane.with_load_factor();
+        if let Some(Followed { factor, .. }) = load_factor(&mut crane, parameter).expect("it rests").followed {
+            assert_close("the factor", factor * payload, expected, 2.0 * ACCURACY);
+        } else {
+            assert!(expected > LoadFactor::MOST_FOLLOWED * payload, "{height} m");
+        }
+    }
 }
