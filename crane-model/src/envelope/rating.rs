@@ -101,7 +101,7 @@ impl Posed<'_> {
     /// end of a path and lead to another one, which may even lead back.
     ///
     /// On a path the stiffness K is positive definite; between two paths it is not, as the energy has a pass there. Both are looked at along the straight line, most closely
-    /// near its beginning, since a crane that snaps through goes far. `det K` tells a pass between two places, however little of the motion it is: it dips. Besides,
+    /// near its beginning, since a crane that snaps through goes far. `det K` shows a pass between two places, however little of the motion it is: it dips. Besides,
     /// Newton's method contracts from the first step on, or the way back ends where it began. What does not hold for a bent path holds in shorter strides.
     pub(super) fn find_next(&mut self, [from, to]: [f64; 2], begin: &[f64]) -> Option<Equilibrium> {
         let found = self.with_load(to)?.find_near(begin)?;
