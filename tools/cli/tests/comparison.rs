@@ -182,9 +182,6 @@ fn cranes_are_compared_by_names() {
         assert_eq!(rows.len(), alone[table].as_array().expect(table).len() + usize::from(table == "points"), "{table}");
         for row in alone[table].as_array().expect(table) {
             let pair = rows.iter().find(|pair| pair[of] == row[of]).unwrap_or_else(|| panic!("{table}: {row}"));
-            let numbers = |row: &Value| -> Vec<f64> {
-                row.as_object().expect("a row").values().filter_map(Value::as_f64).collect()
-            };
             let (own, of_both) = (numbers(row), numbers(pair));
             assert_eq!(of_both.len(), 2 * own.len(), "{pair}");
             for number in own {
