@@ -11,7 +11,7 @@ use nalgebra::{Cholesky, Const, DefaultAllocator, Dim, OMatrix, SMatrix, SVector
 use crate::{
     Description, LoopJointInfo, ParameterError, StageInfo, fill_links,
     methods::{Entry, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
-    rt::derivatives::{self, Changes, Columns, Joint, Link, Sixteen, States, Workspace},
+    rt::derivatives::{self, Changes, Columns, EightColumns, Joint, Link, States, Workspace, units},
     rt::lanes::f64x8,
 };
 
@@ -233,7 +233,7 @@ pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
         self.residual_factors(q, v, a, &mut factors);
         self.force_derivatives(t, q, v, out);
         with_workspace(self, |links, workspace| {
-            derivatives::residual_derivatives(links, factors.as_flattened(), workspace, out.as_flattened_mut());
+            derivatives::residual_derivatives(links, workspace, factors.as_flattened(), out.as_flattened_mut());
         });
     }
 
@@ -249,7 +249,7 @@ pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
         // A⁻¹ is symmetric: its rows are its columns.
         let rows = out.data.0.as_flattened_mut();
         with_workspace(self, |links, workspace| {
-            derivatives::inverse_mass_matrix(links, factors.as_flattened(), workspace, rows);
+            derivatives::inverse_mass_matrix(links, workspace, factors.as_flattened(), rows);
         });
     }
 
@@ -263,10 +263,13 @@ pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
         let (mut of_residual, mut of_mass) = ([[0.0; N]; Count::RESIDUAL_FACTORS], [[0.0; N]; Count::MASS_FACTORS]);
         self.residual_factors(q, v, &a, &mut of_residual);
         self.mass_factors(q, &mut of_mass);
-        self.force_derivatives(t, q, v, out);
+        let mut of_forces = [[[0.0; N]; N]; 2];
+        let forces = of_forces.as_flattened_mut();
+        self.force_derivatives(t, q, v, forces);
         let factors = [of_residual.as_flattened(), of_mass.as_flattened()];
         with_workspace(self, |links, workspace| {
-            derivatives::forward_dynamics_derivatives(links, factors, workspace, out.as_flattened_mut());
+            let forces = (forces.as_flattened(), 0..2 * N * N);
+            derivatives::forward_dynamics_derivatives(links, workspace, factors, forces, out.as_flattened_mut());
         });
     }
 
@@ -276,24 +279,23 @@ pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
 /// Calls `compute` with the coordinates of a crane and a workspace for derivatives.
 fn with_workspace<const N: usize>(
     crane: &(impl CraneModel<N> + ?Sized),
-    compute: impl FnOnce(&[Link], Workspace<'_, Sixteen>),
+    compute: impl FnOnce(&[Link], Workspace<'_, EightColumns>),
 ) {
+    const UNITS: usize = units::<EightColumns>(usize::MAX);
     let mut links = [Link::default(); N];
     fill_links(crane.description(), crane.parents(), &mut links);
-    let zero = <Sixteen as Columns>::splat(0.0);
+    let zero = EightColumns::zero();
     let (mut joints, mut changes) = ([Joint::zero(); N], [Changes::zero(); N]);
-    let (mut rows, mut by_q, mut by_v, mut swept) = ([[0.0; 16]; N], [zero; N], [zero; N], [[0.0; _]; N]);
-    let mut now = [[0.0; _]; _];
+    let (mut rows, mut swept, mut now) = ([[0.0; 16]; N], [[[zero; 3]; UNITS]; N], [[zero; 9]; UNITS]);
     let work = |reached: &mut [_], paths: &mut [_]| {
-        let columns = [by_q.as_mut_slice(), by_v.as_mut_slice()];
-        let (joints, rows, changes, swept) = (&mut joints, &mut rows, &mut changes, &mut swept);
+        let (joints, rows, changes, swept) = (&mut joints, &mut rows, &mut changes, swept.as_flattened_mut());
         let states = States { now: &mut now, reached };
-        compute(&links, Workspace { joints, rows, columns, changes, swept, states, paths });
+        compute(&links, Workspace { joints, rows, changes, swept, states, paths });
     };
     if crane.parents().is_empty() {
         work(&mut [], &mut []);
     } else {
-        work(&mut [[[0.0; _]; _]; N], [[0.0; N]; N].as_flattened_mut());
+        work([[[zero; 9]; UNITS]; N].as_flattened_mut(), [[0.0; N]; N].as_flattened_mut());
     }
 }
 

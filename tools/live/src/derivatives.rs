@@ -2,9 +2,12 @@
 
 #![expect(clippy::inline_always, reason = "inlined where wider vectors are known, loops use them")]
 
+use std::iter::Copied;
+use std::slice::Iter;
+
 use crane_jit::{Work, with_vectors};
 use crane_model::rt::derivatives::{
-    self, Changes, Columns, Constant, Joint, Lanes, Link, Row, States, Workspace, has_branches,
+    self, Carried, Changes, Columns, Constant, Entry, Joint, Link, States, Workspace, has_branches, units,
 };
 
 /// Storage for derivatives of the dynamics of a crane.
@@ -12,11 +15,10 @@ pub struct Storage<C: Columns> {
     links: Vec<Link>,
     joints: Vec<Joint<C>>,
     rows: Vec<[C::Number; 16]>,
-    columns: [Vec<C::Block>; 2],
     changes: Vec<Changes<C>>,
-    swept: Vec<Row<C>>,
-    now: Box<Lanes<C>>,
-    reached: Vec<Lanes<C>>,
+    swept: Vec<Entry<C>>,
+    now: Vec<Carried<C>>,
+    reached: Vec<Carried<C>>,
     paths: Vec<C::Number>,
 }
 
@@ -24,70 +26,69 @@ impl<C: Columns> Storage<C> {
     /// For these coordinates.
     pub fn new(links: Vec<Link>) -> Self {
         let (n, zero) = (links.len(), C::Number::constant(0.0));
-        let of_branches = if has_branches(&links) { n } else { 0 };
+        let (of_branches, units) = (if has_branches(&links) { n } else { 0 }, units::<C>(n));
         Self {
             links,
             joints: vec![Joint::zero(); n],
             rows: vec![[zero; _]; n],
-            columns: [0, 1].map(|_| vec![C::splat(zero); n]),
             changes: vec![Changes::zero(); n],
-            swept: vec![[zero; _]; n],
-            now: Box::new([[zero; _]; _]),
-            reached: vec![[[zero; _]; _]; of_branches],
+            swept: vec![[C::zero(); _]; n * units],
+            now: vec![[C::zero(); _]; units],
+            reached: vec![[C::zero(); _]; of_branches * units],
             paths: vec![zero; n * of_branches],
         }
     }
 
     fn workspace(&mut self) -> (&[Link], Workspace<'_, C>) {
-        let Self { links, joints, rows, columns: [by_q, by_v], changes, swept, now, reached, paths } = self;
-        let states = States { now, reached };
-        (links, Workspace { joints, rows, columns: [by_q, by_v], changes, swept, states, paths })
+        let Self { links, joints, rows, changes, swept, now, reached, paths } = self;
+        (links, Workspace { joints, rows, changes, swept, states: States { now, reached }, paths })
     }
 
     /// [`derivatives::residual_derivatives`]
     pub fn residual_derivatives(&mut self, factors: &[C::Number], derivatives: &mut [C::Number]) {
-        let (links, workspace) = self.workspace();
-        derivatives::residual_derivatives(links, factors, workspace, derivatives);
+        with_vectors(ResidualDerivatives { storage: self, factors, derivatives });
     }
 
     /// [`derivatives::inverse_mass_matrix`]
-    pub fn inverse_mass_matrix(&mut self, factors: &[C::Number], inverse: &mut [C::Number]) {
+    pub fn inverse_mass_matrix(&mut self, factors: &[C::Number], inverse: &mut [C::Lane]) {
         with_vectors(InverseMassMatrix { storage: self, factors, inverse });
     }
 
     /// [`derivatives::forward_dynamics_derivatives`]
-    pub fn forward_dynamics_derivatives(&mut self, factors: [&[C::Number]; 2], derivatives: &mut [C::Number]) {
-        with_vectors(ForwardDynamicsDerivatives { storage: self, factors, derivatives });
+    pub fn forward_dynamics_derivatives(
+        &mut self,
+        factors: [&[C::Number]; 2],
+        (forces, places): (&[C::Number], &[usize]),
+        derivatives: &mut [C::Lane],
+    ) {
+        let forces = (forces, places.iter().copied());
+        with_vectors(ForwardDynamicsDerivatives { storage: self, factors, forces, derivatives });
     }
 }
 
-struct InverseMassMatrix<'a, C: Columns> {
-    storage: &'a mut Storage<C>,
-    factors: &'a [C::Number],
-    inverse: &'a mut [C::Number],
+/// Work of a function of [`derivatives`], with what it is given. Of a closure, wider vectors would not reach the inside.
+macro_rules! work {
+    ($name:ident, $function:ident($($given:ident: $type:ty),*)) => {
+        struct $name<'a, C: Columns> {
+            storage: &'a mut Storage<C>,
+            $($given: $type,)*
+        }
+
+        impl<C: Columns> Work for $name<'_, C> {
+            #[inline(always)]
+            fn run(self) {
+                let (links, workspace) = self.storage.workspace();
+                derivatives::$function(links, workspace, $(self.$given),*);
+            }
+        }
+    };
 }
 
-impl<C: Columns> Work for InverseMassMatrix<'_, C> {
-    #[inline(always)]
-    fn run(self) {
-        let (links, workspace) = self.storage.workspace();
-        derivatives::inverse_mass_matrix(links, self.factors, workspace, self.inverse);
-    }
-}
-
-struct ForwardDynamicsDerivatives<'a, C: Columns> {
-    storage: &'a mut Storage<C>,
-    factors: [&'a [C::Number]; 2],
-    derivatives: &'a mut [C::Number],
-}
-
-impl<C: Columns> Work for ForwardDynamicsDerivatives<'_, C> {
-    #[inline(always)]
-    fn run(self) {
-        let (links, workspace) = self.storage.workspace();
-        derivatives::forward_dynamics_derivatives(links, self.factors, workspace, self.derivatives);
-    }
-}
+work!(ResidualDerivatives, residual_derivatives(factors: &'a [C::Number], derivatives: &'a mut [C::Number]));
+work!(InverseMassMatrix, inverse_mass_matrix(factors: &'a [C::Number], inverse: &'a mut [C::Lane]));
+work!(ForwardDynamicsDerivatives, forward_dynamics_derivatives(
+    factors: [&'a [C::Number]; 2], forces: (&'a [C::Number], Copied<Iter<'a, usize>>), derivatives: &'a mut [C::Lane]
+));
 
 #[cfg(test)]
 mod tests {

@@ -3,7 +3,7 @@
 use std::ops::{Add, Div, Mul, Neg};
 
 use crane_codegen::program::Argument;
-use crane_model::rt::derivatives::{Columns, Constant, One, Sixteen};
+use crane_model::rt::derivatives::{Columns, Constant, EightColumns, EightStates};
 use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
 use wide::bytemuck::cast_slice_mut;
@@ -58,7 +58,7 @@ pub enum Form {
 }
 
 /// The number of one state, or numbers of several.
-pub trait Batch: Number {
+pub trait Batch: Number<Columns: Columns<Lane = f64>> {
     /// How many numbers it holds.
     const LANES: usize;
     /// Made of the numbers at each place.
@@ -71,7 +71,7 @@ pub trait Batch: Number {
 pub const ANGLES: usize = 8;
 
 impl Number for f64 {
-    type Columns = Sixteen;
+    type Columns = EightColumns;
     const FORM: Form = Form::One;
     fn flat(several: &mut [Self]) -> &mut [f64] {
         several
@@ -110,7 +110,7 @@ impl Batch for f64 {
 }
 
 impl Number for f64x8 {
-    type Columns = One<f64x8>;
+    type Columns = EightStates;
     const FORM: Form = Form::Eight;
     fn flat(several: &mut [Self]) -> &mut [f64] {
         cast_slice_mut(several)

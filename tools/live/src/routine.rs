@@ -2,6 +2,7 @@
 
 use crane_codegen::lower::Constants;
 use crane_codegen::program::{Function, Program, Shape};
+use crane_codegen::symbolic::{ExprId, Op};
 
 use crate::assemble::{assemble, assemble_constants};
 use crate::bytecode::Code;
@@ -14,6 +15,8 @@ pub struct Routine {
     shape: Shape,
     code: Code,
     constants: Code,
+    /// Places of the slots of its result that are not always zero.
+    places: Vec<usize>,
     /// Machine code for one state, for eight, and for one with derivatives.
     native: [Hot; 3],
 }
@@ -25,7 +28,10 @@ impl Routine {
         let alone = program.alone(function);
         let constants = Constants::of(&alone);
         let code = alone.functions.iter().map(|function| assemble(&alone, &constants, function)).next();
+        let is_zero = |slot: &ExprId| matches!(program.op(*slot), Op::Constant(number) if number.value() == 0.0);
+        let slots = function.outputs.iter().enumerate();
         Self {
+            places: slots.filter(|(_, slot)| !is_zero(slot)).map(|(place, _)| place).collect(),
             shape: function.shape.clone(),
             code: code.unwrap_or_default(),
             constants: assemble_constants(&alone, &constants),
@@ -43,6 +49,12 @@ impl Routine {
     #[must_use]
     pub fn results(&self) -> usize {
         self.code.results
+    }
+
+    /// Places of the slots of its result that are not always zero.
+    #[must_use]
+    pub fn places(&self) -> &[usize] {
+        &self.places
     }
 
     /// Its bytecode.

@@ -77,7 +77,7 @@ impl Crane {
         let [t, q, v, a, parameters] = [0, 1, 2, 3, 4].map(|index| &*joined.arguments[index]);
         let parameters = if self.is_single() { &[][..] } else { parameters };
         let rows = Rows { t, q, v, a, parameters };
-        let (count, width) = (joined.rows(), of_row.iter().product::<usize>());
+        let width = of_row.iter().product::<usize>();
         if joined.shape.is_empty() && bad.is_empty() {
             let out = zeros(py, &[], of_row);
             self.with_workspace(function, |evaluation| {
@@ -85,12 +85,15 @@ impl Crane {
             });
             return Ok(out);
         }
-        let mut out = vec![0.0; count * width];
+        // Room that NumPy asks the system for comes in larger pages.
+        let array = zeros(py, &joined.shape, of_row);
+        let mut numbers = array.readwrite();
+        let out = numbers.as_slice_mut().unwrap_or_default();
         let make = || Evaluation::<f64x8>::new(&self.live, function);
-        for_rows(py, (PIECE, width), &mut out, make, |evaluation, range, out| evaluation.run(&rows, range, out))?;
-        forget(&mut out, &bad, width);
+        for_rows(py, (PIECE, width), out, make, |evaluation, range, out| evaluation.run(&rows, range, out))?;
+        forget(out, &bad, width);
         warn_of_rows(py, &bad, &joined.shape)?;
-        array(py, out, &joined.shape, of_row)
+        Ok(array)
     }
 
     /// The same by a function of one crane.

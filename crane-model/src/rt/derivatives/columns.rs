@@ -1,123 +1,246 @@
 //! Columns of a matrix that are computed together.
 
+#![expect(clippy::inline_always, reason = "inlined where wider vectors are known, loops use them")]
+
 use core::marker::PhantomData;
 use core::ops::{Add, Mul, Neg};
 
-use crate::rt::fused::{Fused, fma};
+use wide::f64x2;
+
+use crate::rt::fused::Fused;
 use crate::rt::lanes::f64x8;
 
-/// Columns of a matrix that are computed together.
+/// Numbers of one state that can be added and multiplied.
+pub trait Scalar:
+    Copy + Fused + Constant + Neg<Output = Self> + Add<Output = Self> + Mul<Output = Self> + 'static
+{
+}
+
+impl<T: Copy + Fused + Constant + Neg<Output = T> + Add<Output = T> + Mul<Output = T> + 'static> Scalar for T {}
+
+/// Columns of a matrix that are computed together, of one state or of several: loops over lanes, each with a column of a state.
+///
+/// The compiler makes vectors of the lanes, as wide as the target has.
 pub trait Columns: Copy {
-    /// An entry of the matrix.
-    type Number: Copy
-        + Fused
-        + Constant
-        + Neg<Output = Self::Number>
-        + Add<Output = Self::Number>
-        + Mul<Output = Self::Number>;
-    /// Entries of neighbouring columns.
-    type Block: Copy + Fused + Neg<Output = Self::Block> + Add<Output = Self::Block> + Mul<Output = Self::Block>;
+    /// An entry of the matrix, of all states.
+    type Number: Copy + Constant;
+    /// An entry of one state.
+    type Lane: Scalar;
+    /// What is computed together.
+    type Unit: Copy + AsRef<[Self::Lane]> + AsMut<[Self::Lane]>;
     /// How many columns.
     const WIDTH: usize;
-    /// The same number in all columns.
-    fn splat(number: Self::Number) -> Self::Block;
+    /// How many states.
+    const STATES: usize;
+    /// Zero in all lanes.
+    fn zero() -> Self::Unit;
+    /// A number of all columns in a lane.
+    fn of(number: &Self::Number, lane: usize) -> Self::Lane;
+    /// A number of the first column, from its states.
+    fn number(unit: &Self::Unit) -> Self::Number;
     /// The first numbers of a list; zero where it ends.
-    fn load(row: &[Self::Number]) -> Self::Block;
+    fn load(row: &[Self::Number]) -> Self::Unit;
+    /// The numbers of eight units in two neighbouring lanes.
+    fn across(units: &[Self::Unit; 8], pair: usize) -> [[Self::Lane; 8]; 2];
+    /// The numbers of eight units in two neighbouring columns.
+    fn columns(units: &[Self::Unit; 8], pair: usize) -> [[Self::Number; 8]; 2];
     /// Writes as many numbers as the row has.
-    fn store(block: Self::Block, row: &mut [Self::Number]);
-    /// Columns of `before` up to `first`, and of `from` from there on.
-    fn join(before: Self::Block, from: Self::Block, first: usize) -> Self::Block;
+    fn store(unit: &Self::Unit, row: &mut [Self::Number]);
 }
 
-/// Sixteen columns of a matrix of plain numbers.
+/// A number for each lane.
 #[derive(Clone, Copy, Debug)]
-pub struct Sixteen;
+#[repr(align(64))]
+pub struct Lanes<T, const COUNT: usize>([T; COUNT]);
 
-/// Two blocks of eight columns: their operations do not depend on each other, so none has to wait.
+impl<T, const COUNT: usize> AsRef<[T]> for Lanes<T, COUNT> {
+    #[inline(always)]
+    fn as_ref(&self) -> &[T] {
+        &self.0
+    }
+}
+
+impl<T, const COUNT: usize> AsMut<[T]> for Lanes<T, COUNT> {
+    #[inline(always)]
+    fn as_mut(&mut self) -> &mut [T] {
+        &mut self.0
+    }
+}
+
+/// [`Columns::across`] by vectors of two numbers, which every target has.
+#[inline(always)]
+fn across(units: &[Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
+    let mut lines = [[0.0; 8]; 2];
+    for k in 0..4 {
+        let two = |unit: &Lanes<f64, 8>| f64x2::new([unit.0[2 * pair], unit.0[2 * pair + 1]]);
+        let [one, other] = f64x2::transpose([two(&units[2 * k]), two(&units[2 * k + 1])]);
+        ([lines[0][2 * k], lines[0][2 * k + 1]], [lines[1][2 * k], lines[1][2 * k + 1]]) =
+            (one.to_array(), other.to_array());
+    }
+    lines
+}
+
+/// Eight columns of a matrix of one state.
 #[derive(Clone, Copy, Debug)]
-pub struct Eights([f64x8; 2]);
+pub struct EightColumns;
 
-impl Fused for Eights {
-    #[inline]
-    fn fma(a: Self, b: Self, c: Self) -> Self {
-        Eights([fma(a.0[0], b.0[0], c.0[0]), fma(a.0[1], b.0[1], c.0[1])])
-    }
-}
-
-impl Neg for Eights {
-    type Output = Self;
-    #[inline]
-    fn neg(self) -> Self {
-        Eights([-self.0[0], -self.0[1]])
-    }
-}
-
-impl Add for Eights {
-    type Output = Self;
-    #[inline]
-    fn add(self, other: Self) -> Self {
-        Eights([self.0[0] + other.0[0], self.0[1] + other.0[1]])
-    }
-}
-
-impl Mul for Eights {
-    type Output = Self;
-    #[inline]
-    fn mul(self, other: Self) -> Self {
-        Eights([self.0[0] * other.0[0], self.0[1] * other.0[1]])
-    }
-}
-
-impl Columns for Sixteen {
+impl Columns for EightColumns {
     type Number = f64;
-    type Block = Eights;
-    const WIDTH: usize = 16;
+    type Lane = f64;
+    type Unit = Lanes<f64, 8>;
+    const WIDTH: usize = 8;
+    const STATES: usize = 1;
 
-    #[inline]
-    fn splat(number: f64) -> Eights {
-        Eights([f64x8::splat(number); 2])
+    #[inline(always)]
+    fn zero() -> Lanes<f64, 8> {
+        Lanes([0.0; 8])
     }
 
-    #[inline]
-    fn load(row: &[f64]) -> Eights {
-        if let Some(chunk) = row.first_chunk::<16>() {
-            let eight = |numbers: Option<&[f64; 8]>| numbers.map_or(f64x8::ZERO, |numbers| f64x8::new(*numbers));
-            return Eights([eight(chunk.first_chunk()), eight(chunk.last_chunk())]);
+    #[inline(always)]
+    fn of(number: &f64, _: usize) -> f64 {
+        *number
+    }
+
+    #[inline(always)]
+    fn number(unit: &Lanes<f64, 8>) -> f64 {
+        unit.0[0]
+    }
+
+    #[inline(always)]
+    fn load(row: &[f64]) -> Lanes<f64, 8> {
+        if let Some(eight) = row.first_chunk() {
+            return Lanes(*eight);
         }
-        let mut numbers = [[0.0; 8]; 2];
-        numbers.as_flattened_mut().iter_mut().zip(row).for_each(|(number, entry)| *number = *entry);
-        Eights([f64x8::new(numbers[0]), f64x8::new(numbers[1])])
+        let mut unit = Self::zero();
+        for k in 0..row.len().min(8) {
+            unit.0[k] = row[k];
+        }
+        unit
     }
 
-    #[inline]
-    fn store(block: Eights, row: &mut [f64]) {
-        let (eights, rest) = row.as_chunks_mut::<8>();
-        let [first, second] = [block.0[0].to_array(), block.0[1].to_array()];
-        match eights {
-            [] => rest.iter_mut().zip(first).for_each(|(entry, number)| *entry = number),
-            [one] => {
-                *one = first;
-                rest.iter_mut().zip(second).for_each(|(entry, number)| *entry = number);
-            }
-            [one, two, ..] => [*one, *two] = [first, second],
+    #[inline(always)]
+    fn store(unit: &Lanes<f64, 8>, row: &mut [f64]) {
+        if let Some(eight) = row.first_chunk_mut() {
+            *eight = unit.0;
+            return;
+        }
+        for k in 0..row.len().min(8) {
+            row[k] = unit.0[k];
         }
     }
 
-    #[inline]
-    #[expect(clippy::cast_precision_loss, reason = "indices of columns are small")]
-    fn join(before: Eights, from: Eights, first: usize) -> Eights {
-        let first = f64x8::splat(first as f64);
-        let join = |lanes: f64x8, before: f64x8, from: f64x8| lanes.simd_ge(first).select(from, before);
-        Eights([join(LANES, before.0[0], from.0[0]), join(LANES + f64x8::splat(8.0), before.0[1], from.0[1])])
+    #[inline(always)]
+    fn across(units: &[Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
+        across(units, pair)
+    }
+
+    #[inline(always)]
+    fn columns(units: &[Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
+        across(units, pair)
     }
 }
 
-/// The indices of eight columns.
-const LANES: f64x8 = f64x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+/// One column of a matrix of eight states.
+#[derive(Clone, Copy, Debug)]
+pub struct EightStates;
 
-/// One column of a matrix of any numbers, for example of those of eight states.
+impl Columns for EightStates {
+    type Number = f64x8;
+    type Lane = f64;
+    type Unit = Lanes<f64, 8>;
+    const WIDTH: usize = 1;
+    const STATES: usize = 8;
+
+    #[inline(always)]
+    fn zero() -> Lanes<f64, 8> {
+        Lanes([0.0; 8])
+    }
+
+    #[inline(always)]
+    fn of(number: &f64x8, lane: usize) -> f64 {
+        number.as_array()[lane]
+    }
+
+    #[inline(always)]
+    fn number(unit: &Lanes<f64, 8>) -> f64x8 {
+        f64x8::new(unit.0)
+    }
+
+    #[inline(always)]
+    fn load(row: &[f64x8]) -> Lanes<f64, 8> {
+        row.first().map_or_else(Self::zero, |number| Lanes(number.to_array()))
+    }
+
+    #[inline(always)]
+    fn store(unit: &Lanes<f64, 8>, row: &mut [f64x8]) {
+        if let Some(entry) = row.first_mut() {
+            *entry = f64x8::new(unit.0);
+        }
+    }
+
+    #[inline(always)]
+    fn across(units: &[Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
+        across(units, pair)
+    }
+
+    #[inline(always)]
+    fn columns(units: &[Lanes<f64, 8>; 8], _: usize) -> [[f64x8; 8]; 2] {
+        let mut numbers = [[f64x8::ZERO; 8]; 2];
+        for k in 0..8 {
+            numbers[0][k] = f64x8::new(units[k].0);
+        }
+        numbers
+    }
+}
+
+/// One column of a matrix of any numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct One<T>(PhantomData<T>);
+
+impl<T: Scalar> Columns for One<T> {
+    type Number = T;
+    type Lane = T;
+    type Unit = [T; 1];
+    const WIDTH: usize = 1;
+    const STATES: usize = 1;
+
+    #[inline(always)]
+    fn zero() -> [T; 1] {
+        [T::constant(0.0)]
+    }
+
+    #[inline(always)]
+    fn of(number: &T, _: usize) -> T {
+        *number
+    }
+
+    #[inline(always)]
+    fn number(unit: &[T; 1]) -> T {
+        unit[0]
+    }
+
+    #[inline(always)]
+    fn load(row: &[T]) -> [T; 1] {
+        [row.first().copied().unwrap_or(T::constant(0.0))]
+    }
+
+    #[inline(always)]
+    fn store([number]: &[T; 1], row: &mut [T]) {
+        if let Some(entry) = row.first_mut() {
+            *entry = *number;
+        }
+    }
+
+    #[inline(always)]
+    fn across(units: &[[T; 1]; 8], _: usize) -> [[T; 8]; 2] {
+        [units.map(|[number]| number); 2]
+    }
+
+    #[inline(always)]
+    fn columns(units: &[[T; 1]; 8], _: usize) -> [[T; 8]; 2] {
+        [units.map(|[number]| number); 2]
+    }
+}
 
 /// Numbers with constants.
 pub trait Constant {
@@ -128,56 +251,25 @@ pub trait Constant {
 }
 
 impl Constant for f64 {
-    #[inline]
+    #[inline(always)]
     fn constant(number: f64) -> f64 {
         number
     }
 
-    #[inline]
+    #[inline(always)]
     fn is_zero(&self) -> bool {
         *self == 0.0
     }
 }
 
 impl Constant for f64x8 {
-    #[inline]
+    #[inline(always)]
     fn constant(number: f64) -> f64x8 {
         f64x8::splat(number)
     }
 
-    #[inline]
+    #[inline(always)]
     fn is_zero(&self) -> bool {
-        *self == f64x8::ZERO
-    }
-}
-
-impl<T: Copy + Fused + Constant + Neg<Output = T> + Add<Output = T> + Mul<Output = T>> Columns for One<T> {
-    type Number = T;
-    type Block = T;
-    const WIDTH: usize = 1;
-
-    #[inline]
-    fn splat(number: T) -> T {
-        number
-    }
-
-    #[inline]
-    fn load(row: &[T]) -> T {
-        match row {
-            [first, ..] => *first,
-            [] => T::constant(0.0),
-        }
-    }
-
-    #[inline]
-    fn store(block: T, row: &mut [T]) {
-        if let Some(entry) = row.first_mut() {
-            *entry = block;
-        }
-    }
-
-    #[inline]
-    fn join(before: T, from: T, first: usize) -> T {
-        if first == 0 { from } else { before }
+        self.as_array().iter().fold(true, |is_zero, number| is_zero & (*number == 0.0))
     }
 }

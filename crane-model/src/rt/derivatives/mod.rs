@@ -1,15 +1,16 @@
-//! Derivatives of the dynamics, multiplied from their factors in loops over the coordinates, several columns at a time.
+//! Derivatives of the dynamics, multiplied from their factors in loops over the coordinates, several columns or several states at a time.
 //!
 //! Of the inverse mass matrix, the factors of coordinate j are its axis n, the force λ and moment κ of everything beyond for a unit rate, divided
 //! by the articulated inertia D along the axis, the offset d to its point from that of the coordinate before it, and 1/D, all in the world's axes.
-//! `A⁻¹ R = Lᵀ D⁻¹ L R` takes an inward and an outward sweep for each column r of R:
+//! `A⁻¹ R = Lᵀ D⁻¹ L R` takes an inward and an outward sweep for each column r of R = 1:
 //!
 //! ```text
 //! g_j = r_j − n · m,            m ← m + κ g_j + d × f,   f ← f + λ g_j      from the tips to the base; of a translation n · f
 //! x_j = g_j/D − κ · α − λ · a,   α ← α + n x_j,            a ← a + α × d      from the base to the tips; of a translation a ← a + n x_j
 //! ```
 //!
-//! Columns of `−A⁻¹ ∂r` need no column of ∂r, see `changes`. Matrices of several trees are zero between them, and are not computed there.
+//! Columns of `−A⁻¹ ∂r` are products of what these sweeps know, see `changes`; those of A⁻¹ with ∂f are added entry by entry of ∂f that is not zero.
+//! Matrices of several trees are zero between them, and are not computed there.
 //!
 //! The derivatives of the generalized forces that a motion requires are products of vectors of two coordinates, of i and of j, if one is on the
 //! path of the other. Of everything beyond coordinate j, W is the pseudo-inertia, G is `∫ ẋ xᵀ dm` and F the force and moment that its motion
@@ -34,13 +35,13 @@ mod vectors;
 
 use core::ops::Range;
 
+use crate::rt::fused::fma;
+use changes::COLUMNS as OF_CHANGES;
 pub use changes::Changes;
-use changes::Entering;
-pub use columns::{Columns, Constant, Eights, One, Sixteen};
+pub use columns::{Columns, Constant, EightColumns, EightStates, One};
 use residual::{Slopes, mark_paths};
-pub use sweeps::{Joint, Lanes, Row, States};
-use sweeps::{LANES, Nothing, Sweeps, unit};
-use vectors::{Three, one, zero};
+use sweeps::{COLUMNS, Sweeps, part};
+pub use sweeps::{Carried, Entry, Joint, States};
 
 /// What the sweeps must know of a coordinate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,37 +63,44 @@ impl Link {
 /// Numbers of one coordinate, next to each other.
 type Own<C> = [<C as Columns>::Number; 16];
 
-/// Storage for what is computed on the way; all lists have an entry for each coordinate.
+/// Storage for what is computed on the way; all lists have an entry for each coordinate, or [`units`] of them.
 pub struct Workspace<'a, C: Columns> {
     /// For the factors of A⁻¹.
     pub joints: &'a mut [Joint<C>],
     /// For the factors of derivatives in their rows.
     pub rows: &'a mut [Own<C>],
-    /// Columns of two matrices.
-    pub columns: [&'a mut [C::Block]; 2],
     /// For what changes of the coordinates do.
     pub changes: &'a mut [Changes<C>],
-    /// Columns of several matrices, side by side.
-    pub swept: &'a mut [Row<C>],
+    /// For columns of the matrices, side by side.
+    pub swept: &'a mut [Entry<C>],
     /// For the sweeps.
     pub states: States<'a, C>,
     /// Whether two coordinates are on one path, 1 or 0; empty if there are no branches.
     pub paths: &'a mut [C::Number],
 }
 
-/// Three numbers of a coordinate in all columns.
-#[inline]
-fn three<C: Columns>(own: &Own<C>, first: usize) -> Three<C> {
-    let of = |k: usize| C::splat(own.get(first + k).copied().unwrap_or(zero::<C>()));
-    [of(0), of(1), of(2)]
+/// How many units of columns are swept together, for some coordinates.
+#[must_use]
+pub const fn units<C: Columns>(coordinates: usize) -> usize {
+    let most = if coordinates < COLUMNS { coordinates } else { COLUMNS };
+    (if most < OF_CHANGES { OF_CHANGES } else { most }).div_ceil(C::WIDTH)
 }
 
-/// Writes columns from `first` on.
-#[inline]
-fn store<C: Columns>(columns: &[C::Block], first: usize, matrix: &mut [C::Number]) {
-    for (column, row) in columns.iter().zip(matrix.chunks_exact_mut(columns.len().max(1))) {
-        C::store(*column, row.get_mut(first..).unwrap_or_default());
+/// A number made of others, state by state.
+#[inline(always)]
+fn combine<C: Columns, const COUNT: usize>(
+    numbers: [&C::Number; COUNT],
+    make: impl Fn([C::Lane; COUNT]) -> C::Lane,
+) -> C::Number {
+    let mut unit = C::zero();
+    for state in 0..C::STATES {
+        let mut lanes = [C::Lane::constant(0.0); COUNT];
+        for k in 0..COUNT {
+            lanes[k] = C::of(numbers[k], state);
+        }
+        unit.as_mut()[state] = make(lanes);
     }
+    C::number(&unit)
 }
 
 /// Whether some coordinate is not attached to the one in front of it.
@@ -117,212 +125,180 @@ fn apart(links: &[Link]) -> impl Iterator<Item = Range<usize>> {
     })
 }
 
-/// Columns that are swept together.
+/// Columns that are swept together, of coordinates that have no path in common with others.
 struct Piece {
+    own: Range<usize>,
     columns: Range<usize>,
-    /// Units of lanes that they take.
-    units: usize,
+    /// Units of a row, and those that they take.
+    stride: usize,
+    units: Range<usize>,
 }
 
-/// Pieces of columns, as many as the lanes hold of several matrices.
-fn pieces<C: Columns>(columns: &Range<usize>, matrices: usize) -> impl Iterator<Item = Piece> {
-    let (Range { start, end }, width) = (columns.clone(), LANES / matrices);
-    (start..end).step_by(width).map(move |first| {
-        let columns = first..end.min(first + width);
-        Piece { units: (matrices * columns.len()).div_ceil(unit::<C>()), columns }
-    })
-}
-
-/// A matrix of n rows, and where its columns lie in the lanes.
-struct Matrix<'a, T> {
-    n: usize,
-    numbers: &'a mut [T],
-    lane: usize,
-}
-
-impl<T: Copy + Constant> Matrix<'_, T> {
-    /// Part of a row.
+impl Piece {
+    /// All of them.
     #[inline(always)]
-    fn part(&mut self, row: usize, columns: &Range<usize>) -> &mut [T] {
-        let first = row * self.n;
-        self.numbers.get_mut(first + columns.start..first + columns.end).unwrap_or_default()
+    fn all<C: Columns>(links: &[Link], stride: usize) -> impl Iterator<Item = Piece> {
+        let width = stride * C::WIDTH;
+        apart(links).flat_map(move |own| {
+            own.clone().step_by(width.max(1)).map(move |first| {
+                let columns = first..own.end.min(first + width);
+                let units = 0..columns.len().div_ceil(C::WIDTH);
+                Piece { own: own.clone(), columns, stride, units }
+            })
+        })
     }
 
-    /// Whether entries of these columns are not zero in other rows.
-    fn has_others(&mut self, own: &Range<usize>) -> bool {
-        let mut is_zero = true;
-        for row in (0..own.start).chain(own.end..self.n) {
-            self.part(row, own).iter().for_each(|entry| is_zero &= entry.is_zero());
-        }
-        !is_zero
-    }
-
-    /// Makes entries of these columns zero in other rows.
-    fn clear_others(&mut self, own: &Range<usize>) {
-        for row in (0..own.start).chain(own.end..self.n) {
-            self.part(row, own).fill(T::constant(0.0));
-        }
-    }
-
-    /// Copies columns into lanes, and returns the end of the rows that are not zero.
+    /// Columns of A⁻¹, and of its products if there are `changes`.
     #[inline(always)]
-    fn load(&mut self, own: &Range<usize>, columns: &Range<usize>, swept: &mut [[T; LANES]]) -> usize {
-        let (lane, mut end) = (self.lane, 0);
-        for i in own.start..own.end {
-            let (part, Some(lanes)) = (self.part(i, columns), swept.get_mut(i).and_then(|row| row.get_mut(lane..)))
-            else {
-                continue;
-            };
-            let mut is_zero = true;
-            copy(part, lanes);
-            for k in 0..part.len() {
-                is_zero &= part[k].is_zero();
-            }
-            if !is_zero {
-                end = i + 1;
+    fn sweep<const CAUSES: bool, C: Columns>(
+        &self,
+        sweeps: &Sweeps<'_, C>,
+        swept: &mut [Entry<C>],
+        states: &mut States<'_, C>,
+        changes: &[Changes<C>],
+    ) {
+        let Piece { own, columns, stride, units } = self;
+        for i in 0..sweeps.links.len() {
+            let row = part(swept, *stride, i, units);
+            for k in 0..row.len() {
+                row[k] = [C::zero(); 3];
             }
         }
-        end
+        for (lane, i) in columns.clone().enumerate() {
+            if let Some([unit, ..]) = swept.get_mut(i * stride + lane / C::WIDTH) {
+                let of_column = lane % C::WIDTH..lane % C::WIDTH + C::STATES;
+                unit.as_mut().get_mut(of_column).unwrap_or_default().fill(C::Lane::constant(1.0));
+            }
+        }
+        let beyond = |j: usize| {
+            let end = sweeps.joints.get(j).map_or(0, |joint| joint.end).min(columns.end);
+            let unit = |column: usize| column.saturating_sub(columns.start);
+            unit(j) / C::WIDTH..unit(end).div_ceil(C::WIDTH)
+        };
+        sweeps.inward::<CAUSES>(own.start..own.end, beyond, swept, states, changes, |_, _| {});
+        sweeps.outward::<CAUSES>(own.clone(), units, swept, states, changes);
     }
 
-    /// Copies columns from lanes.
+    /// Adds the product of A⁻¹ with an entry of ∂f/∂q or of ∂f/∂v, by its place among both.
     #[inline(always)]
-    fn store(&mut self, own: &Range<usize>, columns: &Range<usize>, swept: &[[T; LANES]]) {
-        let lane = self.lane;
-        for i in own.start..own.end {
-            let (part, Some(lanes)) = (self.part(i, columns), swept.get(i).and_then(|row| row.get(lane..))) else {
-                continue;
-            };
-            copy(lanes, part);
+    fn add_force<C: Columns>(&self, n: usize, place: usize, force: &C::Number, swept: &mut [Entry<C>]) {
+        let (row, j) = (place / n, place % n);
+        let (which, i) = if row < n { (1, row) } else { (2, row - n) };
+        if !self.own.contains(&i) || force.is_zero() {
+            return;
+        }
+        for unit in self.units.clone() {
+            let Some([x, ..]) = swept.get(i * self.stride + unit).copied() else { continue };
+            let Some(entry) = swept.get_mut(j * self.stride + unit) else { continue };
+            let mut sum = entry[which];
+            for lane in 0..C::WIDTH * C::STATES {
+                sum.as_mut()[lane] = fma(C::of(force, lane), x.as_ref()[lane], sum.as_ref()[lane]);
+            }
+            entry[which] = sum;
+        }
+    }
+
+    /// Writes the first of the matrices, each state after the other: columns of A⁻¹ are its rows, and of its products rows lie side by side.
+    #[inline(always)]
+    fn write<C: Columns>(&self, n: usize, matrices: &[usize], swept: &[Entry<C>], out: &mut [C::Lane]) {
+        for unit in self.units.clone() {
+            for (place, matrix) in matrices.iter().enumerate() {
+                let mut starts = [usize::MAX; 8];
+                for lane in 0..C::WIDTH * C::STATES {
+                    let row = self.columns.start + unit * C::WIDTH + lane / C::STATES;
+                    if row < self.columns.end {
+                        starts[lane] = ((lane % C::STATES * matrices.len() + place) * n + row) * n;
+                    }
+                }
+                for first in (0..n).step_by(8) {
+                    let mut block = [C::zero(); 8];
+                    for k in 0..8 {
+                        let Some(entry) = swept.get((first + k) * self.stride + unit) else { break };
+                        block[k] = entry[*matrix];
+                    }
+                    let count = (n - first).min(8);
+                    for pair in 0..(C::WIDTH * C::STATES).div_ceil(2) {
+                        for (side, line) in C::across(&block, pair).into_iter().enumerate() {
+                            let start = starts[2 * pair + side].saturating_add(first);
+                            let Some(entries) = out.get_mut(start..start.saturating_add(count)) else { continue };
+                            match entries.first_chunk_mut() {
+                                Some(eight) => *eight = line,
+                                None => entries.iter_mut().zip(line).for_each(|(entry, number)| *entry = number),
+                            }
+                        }
+                    }
+                }
+            }
         }
     }
 }
 
-/// Copies as many numbers as both have, eight at a time.
-#[inline(always)]
-#[expect(clippy::manual_memcpy, reason = "short: a call would take longer than the loop")]
-fn copy<T: Copy>(from: &[T], to: &mut [T]) {
-    let count = from.len().min(to.len());
-    let (Some(from), Some(to)) = (from.get(..count), to.get_mut(..count)) else { return };
-    let ((eights, rest), (to_eights, to_rest)) = (from.as_chunks::<8>(), to.as_chunks_mut::<8>());
-    for k in 0..eights.len().min(to_eights.len()) {
-        to_eights[k] = eights[k];
-    }
-    for k in 0..rest.len().min(to_rest.len()) {
-        to_rest[k] = rest[k];
-    }
-}
-
-/// Makes units of lanes of some rows zero, except for columns of the unit matrix from a lane on.
-#[inline(always)]
-fn set_ones<C: Columns>(own: &Range<usize>, Piece { columns, units }: &Piece, first: usize, swept: &mut [Row<C>]) {
-    for i in own.start..own.end {
-        let Some(row) = swept.get_mut(i) else { continue };
-        for k in 0..unit::<C>() * (*units).min(LANES / unit::<C>()) {
-            row[k] = zero::<C>();
-        }
-        if i >= columns.start
-            && i < columns.end
-            && let Some(entry) = row.get_mut(first + i - columns.start)
-        {
-            *entry = one::<C>();
-        }
-    }
-}
-
-/// A⁻¹, row by row; `factors`: those of [`mass_factors`](crate::MotionDerivatives::mass_factors), row by row.
+/// A⁻¹, row by row, of each state; `factors`: those of [`mass_factors`](crate::MotionDerivatives::mass_factors), row by row.
 #[inline(always)]
 pub fn inverse_mass_matrix<C: Columns>(
     links: &[Link],
-    factors: &[C::Number],
     workspace: Workspace<'_, C>,
-    inverse: &mut [C::Number],
+    factors: &[C::Number],
+    inverse: &mut [C::Lane],
 ) {
     let Workspace { joints, swept, mut states, .. } = workspace;
     let sweeps = Sweeps::<C>::new(links, factors, joints);
-    let mut inverse = Matrix { n: links.len(), numbers: inverse, lane: 0 };
-    for own in apart(links) {
-        inverse.clear_others(&own);
-        for piece in pieces::<C>(&own, 1) {
-            set_ones::<C>(&own, &piece, 0, swept);
-            let Piece { columns, units } = piece;
-            sweeps.inward(own.start..columns.end, swept, units, &mut states, &mut Nothing);
-            sweeps.outward(own.clone(), false, swept, units, &mut states, &mut Nothing);
-            inverse.store(&own, &columns, swept);
-        }
+    for piece in Piece::all::<C>(links, states.now.len()) {
+        piece.sweep::<false, C>(&sweeps, swept, &mut states, &[]);
+        piece.write::<C>(links.len(), &[0], swept, inverse);
     }
 }
 
 /// `∂r/∂q` and `∂r/∂v` in place of `∂f/∂q` and `∂f/∂v`, row by row; `factors`: those of
 /// [`residual_factors`](crate::MotionDerivatives::residual_factors).
+#[inline(always)]
 pub fn residual_derivatives<C: Columns>(
     links: &[Link],
-    factors: &[C::Number],
     workspace: Workspace<'_, C>,
+    factors: &[C::Number],
     derivatives: &mut [C::Number],
 ) {
-    let Workspace { rows, columns: [by_q, by_v], paths, .. } = workspace;
+    let Workspace { rows, paths, .. } = workspace;
     if has_branches(links) {
         mark_paths::<C>(links, paths);
     }
-    let slopes = Slopes::<C>::new(links, factors, rows, paths);
+    let slopes = Slopes::<C>::new(links, factors, rows, &mut []);
     let (of_q, of_v) = derivatives.split_at_mut(derivatives.len() / 2);
-    slopes.subtract_diagonals(of_q);
-    for first in (0..links.len()).step_by(C::WIDTH) {
-        slopes.columns(first, [&*of_q, &*of_v], [&mut *by_q, &mut *by_v]);
-        for (columns, matrix) in [(&mut *by_q, &mut *of_q), (&mut *by_v, &mut *of_v)] {
-            for column in columns.iter_mut() {
-                *column = -*column;
-            }
-            store::<C>(columns, first, matrix);
+    for (place, added) in slopes.diagonals() {
+        if let Some(entry) = of_q.get_mut(place) {
+            *entry = combine::<C, 2>([entry, added], |[entry, added]| entry + -added);
         }
+    }
+    for first in (0..links.len()).step_by(C::WIDTH) {
+        slopes.columns(first, paths, [&mut *of_q, &mut *of_v]);
     }
 }
 
-/// `∂q̈/∂q`, `∂q̈/∂v` and A⁻¹ in place of `∂f/∂q`, `∂f/∂v` and anything; `of_residual` and `of_mass`: factors of both.
+/// `∂q̈/∂q`, `∂q̈/∂v` and A⁻¹ of each state, row by row; `of_residual` and `of_mass`: factors of both; `forces`: `∂f/∂q` and `∂f/∂v`, row by row,
+/// and the places of entries that may not be zero.
 #[inline(always)]
 pub fn forward_dynamics_derivatives<C: Columns>(
     links: &[Link],
-    [of_residual, of_mass]: [&[C::Number]; 2],
     workspace: Workspace<'_, C>,
-    derivatives: &mut [C::Number],
+    [of_residual, of_mass]: [&[C::Number]; 2],
+    (forces, places): (&[C::Number], impl Iterator<Item = usize> + Clone),
+    derivatives: &mut [C::Lane],
 ) {
     let Workspace { joints, rows, changes, swept, mut states, .. } = workspace;
     let n = links.len();
-    let (of_q, rest) = derivatives.split_at_mut(derivatives.len().min(n * n));
-    let (of_v, inverse) = rest.split_at_mut(rest.len().min(n * n));
-    let slopes = Slopes::<C>::new(links, of_residual, rows, &[]);
-    slopes.subtract_diagonals(of_q);
-    for first in (0..n).step_by(C::WIDTH) {
-        slopes.changes(first, changes);
-    }
+    let slopes = Slopes::<C>::new(links, of_residual, rows, changes);
     let mut sweeps = Sweeps::<C>::new(links, of_mass, joints);
     changes::give_way(&mut sweeps, slopes.rows, changes, swept, &mut states);
-    let matrix = |numbers| Matrix { n, numbers, lane: 0 };
-    let mut matrices = [matrix(of_q), matrix(of_v), matrix(inverse)];
-    let [of_q, of_v, _] = &mut matrices;
-    // Forces may act between what is apart.
-    let is_coupled = apart(links).any(|own| of_q.has_others(&own) || of_v.has_others(&own));
-    let whole = is_coupled.then_some(0..n);
-    for own in whole.into_iter().chain(apart(links).take(if is_coupled { 0 } else { n })) {
-        for piece in pieces::<C>(&own, 3) {
-            let width = piece.columns.len();
-            set_ones::<C>(&own, &piece, 2 * width, swept);
-            let Piece { columns, units } = piece;
-            let mut end = columns.end;
-            for (matrix, lane) in matrices.iter_mut().zip([0, width, 2 * width]) {
-                matrix.lane = lane;
-                matrix.clear_others(&own);
-            }
-            for forces in matrices.iter_mut().take(2) {
-                end = end.max(forces.load(&own, &columns, swept));
-            }
-            let mut entering = Entering { changes, first: columns.start, width };
-            sweeps.inward(own.start..end, swept, units, &mut states, &mut entering);
-            sweeps.outward(own.clone(), true, swept, units, &mut states, &mut entering);
-            for matrix in &mut matrices {
-                matrix.store(&own, &columns, swept);
+    for piece in Piece::all::<C>(links, states.now.len()) {
+        piece.sweep::<true, C>(&sweeps, swept, &mut states, changes);
+        for place in places.clone() {
+            if let Some(force) = forces.get(place) {
+                piece.add_force::<C>(n, place, force, swept);
             }
         }
+        for (place, added) in slopes.diagonals() {
+            piece.add_force::<C>(n, place, &combine::<C, 1>([added], |[added]| -added), swept);
+        }
+        piece.write::<C>(n, &[1, 2, 0], swept, derivatives);
     }
 }

@@ -1,11 +1,11 @@
 //! Derivatives of the residual, from vectors of each coordinate.
 
-#![expect(clippy::inline_always, reason = "results of more numbers than registers would go through memory")]
+#![expect(clippy::inline_always, reason = "inlined where wider vectors are known, loops use them")]
 
 use super::changes::Changes;
-use super::columns::{Columns, Constant};
-use super::vectors::{Six, Three, both, commutator_add, cross_add, dot, dot_add, nothing, one, plus, scaled_add, zero};
-use super::{Link, Own, three};
+use super::columns::{Columns, Constant, Scalar};
+use super::vectors::{Six, Three, commutator_add, cross_add, cross_subtract, dot, dot_add, plus, scaled_add, three};
+use super::{Link, Own};
 
 /// First rows of the vectors of [`residual_factors`](crate::MotionDerivatives::residual_factors).
 mod rows {
@@ -41,47 +41,92 @@ pub(super) mod own {
     pub const HALF_GYRATION: usize = 12;
 }
 
-/// The inertia of everything beyond some coordinates, and the motion of this inertia.
-struct Beyond<C: Columns> {
-    mass: C::Block,
-    moments: [Three<C>; 2],
-    inertia: [Three<C>; 3],
-    turning: [Three<C>; 3],
-    momentum: Three<C>,
-}
+/// Of a change of a coordinate, and of its rate: the moment and force that it requires, while everything beyond is rigid, its
+/// angular and linear acceleration, and twice the angular rates. About the world's origin.
+type Vectors<T> = [[T; 15]; 2];
 
-impl<C: Columns> Beyond<C> {
-    /// Force and moment `Ω W + c`.
+/// How many rows of factors the vectors need.
+const ROWS: usize = rows::DIAGONALS;
+
+/// The factors of a coordinate and a state: those of some coordinates and states, in a lane.
+struct Factors<'a, C: Columns>(&'a [C::Unit; ROWS], usize);
+
+impl<C: Columns<Lane = L>, L: Scalar> Factors<'_, C> {
     #[inline(always)]
-    fn momenta_add(&self, [omega, upsilon]: Six<C>, [force, moment]: Six<C>) -> Six<C> {
-        let [moments, minus] = self.moments;
-        let force = cross_add::<C>([minus, moments], omega, scaled_add::<C>(upsilon, self.mass, force));
-        let moment = cross_add::<C>(self.moments, upsilon, moment);
-        let [x, y, z] = self.inertia;
-        let moment =
-            [dot_add::<C>(x, omega, moment[0]), dot_add::<C>(y, omega, moment[1]), dot_add::<C>(z, omega, moment[2])];
-        [force, moment]
+    fn one(&self, row: usize) -> L {
+        self.0[row].as_ref()[self.1]
+    }
+
+    #[inline(always)]
+    fn three(&self, row: usize) -> Three<L> {
+        [self.one(row), self.one(row + 1), self.one(row + 2)]
+    }
+
+    #[inline(always)]
+    fn six(&self, rows: [usize; 2]) -> Six<L> {
+        [self.three(rows[0]), self.three(rows[1])]
+    }
+
+    /// Force and moment `Ω W + c`, W of everything beyond.
+    #[inline(always)]
+    fn momenta_add(&self, [omega, upsilon]: Six<L>, [force, moment]: Six<L>) -> Six<L> {
+        let moments = self.three(rows::MOMENTS);
+        let force = cross_subtract(moments, omega, scaled_add(upsilon, self.one(rows::MASS), force));
+        let moment = cross_add(moments, upsilon, moment);
+        let [x, y, z] = three!(|k| self.three(rows::INERTIA[k]));
+        [force, [dot_add(x, omega, moment[0]), dot_add(y, omega, moment[1]), dot_add(z, omega, moment[2])]]
     }
 
     /// `∫ s × ẋ dm` and its moment.
     #[inline(always)]
-    fn turn(&self, s: Three<C>) -> Six<C> {
-        let zero = [C::splat(zero::<C>()); 3];
-        let [x, y, z] = self.turning;
-        let force = cross_add::<C>(both::<C>(s), self.momentum, zero);
-        [force, [dot::<C>(x, s), dot::<C>(y, s), dot::<C>(z, s)]]
+    fn turn(&self, s: Three<L>) -> Six<L> {
+        let force = cross_add(s, self.three(rows::MOMENTUM), [L::constant(0.0); 3]);
+        [force, three!(|k| dot(self.three(rows::TURNING[k]), s))]
+    }
+
+    /// What a coordinate's own row needs, see [`own`].
+    #[inline(always)]
+    fn own(&self) -> [L; 15] {
+        let [omega, upsilon] = self.six([rows::OMEGA, rows::UPSILON]);
+        let zero = [L::constant(0.0); 3];
+        let [p, l] = self.momenta_add([omega, upsilon], [zero; 2]);
+        let [x, y, z] = three!(|k| self.three(rows::TURNING[k]));
+        let turned = scaled_add(x, omega[0], scaled_add(y, omega[1], scaled_add(z, omega[2], zero)));
+        let half = cross_add(self.three(rows::MOMENTUM), upsilon, turned);
+        flat([omega, upsilon, p, l, half])
+    }
+
+    #[inline(always)]
+    fn vectors(&self) -> Vectors<L> {
+        let twice = |of: Three<L>| plus(of, of);
+        let generator = self.six([rows::OMEGA, rows::UPSILON]);
+        let own_first = self.six([rows::FIRST_OMEGA, rows::FIRST_UPSILON]);
+        let (twice_first, twice_omega) = ([twice(own_first[0]), twice(own_first[1])], twice(generator[0]));
+        let of_first = commutator_add(self.six(rows::VELOCITY), own_first, self.six(rows::ADDED));
+        let second = commutator_add(self.six(rows::RATE), generator, of_first);
+        let force = self.three(rows::FORCE);
+        let [turned_force, turned_moment] = self.momenta_add(second, self.turn(twice_first[0]));
+        let turned_moment = cross_add(generator[0], self.three(rows::MOMENT), turned_moment);
+        let turning = [cross_add(generator[0], force, turned_force), cross_add(generator[1], force, turned_moment)];
+        let with_rate = self.momenta_add(twice_first, self.turn(twice_omega));
+        [
+            flat([turning[1], turning[0], second[0], second[1], twice_first[0]]),
+            flat([with_rate[1], with_rate[0], twice_first[0], twice_first[1], twice_omega]),
+        ]
     }
 }
 
-/// Vectors of some columns.
-struct Vectors<C: Columns> {
-    /// Ω̈ W + 2 Ω̇ G + Ω × F, force and moment.
-    turning: Six<C>,
-    /// 2 (Ω̇ W + Ω G), force and moment.
-    with_rate: Six<C>,
-    second: Six<C>,
-    twice_first: Six<C>,
-    twice_omega: Three<C>,
+#[inline(always)]
+fn flat<L: Copy>([a, b, c, d, e]: [Three<L>; 5]) -> [L; 15] {
+    [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2], e[0], e[1], e[2]]
+}
+
+/// Numbers of some coordinates, each in its lane.
+#[inline(always)]
+pub(super) fn spread<C: Columns>(unit: &C::Unit) -> [C::Number; 8] {
+    let mut numbers = [C::Number::constant(0.0); 8];
+    C::store(unit, &mut numbers);
+    numbers
 }
 
 /// The derivatives of a residual.
@@ -89,34 +134,42 @@ pub(super) struct Slopes<'a, C: Columns> {
     links: &'a [Link],
     factors: &'a [C::Number],
     pub(super) rows: &'a [Own<C>],
-    paths: &'a [C::Number],
 }
 
 impl<'a, C: Columns> Slopes<'a, C> {
+    /// Also writes what `changes` of coordinates and of their rates do, about the world's origin, while everything beyond is rigid.
+    #[inline(always)]
     pub(super) fn new(
         links: &'a [Link],
         factors: &'a [C::Number],
         rows: &'a mut [Own<C>],
-        paths: &'a [C::Number],
+        changes: &mut [Changes<C>],
     ) -> Self {
-        let mut slopes = Slopes { links, factors, rows: &[], paths };
+        let mut slopes = Slopes { links, factors, rows: &[] };
         for first in (0..links.len()).step_by(C::WIDTH) {
-            let (beyond, [omega, upsilon]) = (slopes.beyond(first), slopes.generators(first));
-            let [p, l] = beyond.momenta_add([omega, upsilon], nothing::<C>());
-            let [x, y, z] = beyond.turning;
-            let turned = scaled_add::<C>(
-                x,
-                omega[0],
-                scaled_add::<C>(y, omega[1], scaled_add::<C>(z, omega[2], [C::splat(zero::<C>()); 3])),
-            );
-            let half = cross_add::<C>(both::<C>(beyond.momentum), upsilon, turned);
-            let mut scratch = [zero::<C>(); 16];
-            let vectors = [omega, upsilon, p, l, half];
+            let (factors, mut units) = (slopes.factors(first), [C::zero(); 15]);
+            for lane in 0..C::WIDTH * C::STATES {
+                let own = Factors::<C>(&factors, lane).own();
+                for place in 0..15 {
+                    units[place].as_mut()[lane] = own[place];
+                }
+            }
             for place in 0..15 {
-                C::store(vectors[place / 3][place % 3], &mut scratch);
+                let numbers = spread::<C>(&units[place]);
                 for column in 0..C::WIDTH {
                     let Some(own) = rows.get_mut(first + column) else { break };
-                    own[place] = scratch[column];
+                    own[place] = numbers[column];
+                }
+            }
+            if changes.is_empty() {
+                continue;
+            }
+            let vectors = Self::vectors(&factors);
+            for place in 0..15 {
+                let numbers = [spread::<C>(&vectors[0][place]), spread::<C>(&vectors[1][place])];
+                for column in 0..C::WIDTH {
+                    let Some(change) = changes.get_mut(first + column) else { break };
+                    (change.of[0][place], change.of[1][place]) = (numbers[0][column], numbers[1][column]);
                 }
             }
         }
@@ -125,142 +178,76 @@ impl<'a, C: Columns> Slopes<'a, C> {
     }
 
     #[inline(always)]
-    fn block(&self, row: usize, first: usize) -> C::Block {
-        C::load(self.factors.get(row * self.links.len() + first..).unwrap_or_default())
-    }
-
-    #[inline(always)]
-    fn three(&self, row: usize, first: usize) -> Three<C> {
-        [self.block(row, first), self.block(row + 1, first), self.block(row + 2, first)]
-    }
-
-    #[inline(always)]
-    fn six(&self, rows: [usize; 2], first: usize) -> Six<C> {
-        [self.three(rows[0], first), self.three(rows[1], first)]
-    }
-
-    #[inline(always)]
-    fn generators(&self, first: usize) -> Six<C> {
-        self.six([rows::OMEGA, rows::UPSILON], first)
-    }
-
-    #[inline(always)]
-    fn beyond(&self, first: usize) -> Beyond<C> {
-        let three = |row: usize| self.three(row, first);
-        let [ix, iy, iz] = rows::INERTIA;
-        let [gx, gy, gz] = rows::TURNING;
-        Beyond {
-            mass: self.block(rows::MASS, first),
-            moments: both::<C>(three(rows::MOMENTS)),
-            inertia: [three(ix), three(iy), three(iz)],
-            turning: [three(gx), three(gy), three(gz)],
-            momentum: three(rows::MOMENTUM),
+    fn factors(&self, first: usize) -> [C::Unit; ROWS] {
+        let mut factors = [C::zero(); ROWS];
+        for row in 0..ROWS {
+            factors[row] = C::load(self.factors.get(row * self.links.len() + first..).unwrap_or_default());
         }
+        factors
     }
 
     #[inline(always)]
-    fn vectors(&self, first: usize) -> Vectors<C> {
-        let twice = |of: Three<C>| plus::<C>(of, of);
-        let beyond = self.beyond(first);
-        let generator = self.generators(first);
-        let own_first = self.six([rows::FIRST_OMEGA, rows::FIRST_UPSILON], first);
-        let twice_first = [twice(own_first[0]), twice(own_first[1])];
-        let twice_omega = twice(generator[0]);
-        let of_first = commutator_add::<C>(self.six(rows::VELOCITY, first), own_first, self.six(rows::ADDED, first));
-        let second = commutator_add::<C>(self.six(rows::RATE, first), generator, of_first);
-        let force = self.three(rows::FORCE, first);
-        let omega = both::<C>(generator[0]);
-        let [turned_force, turned_moment] = beyond.momenta_add(second, beyond.turn(twice_first[0]));
-        let turned_moment = cross_add::<C>(omega, self.three(rows::MOMENT, first), turned_moment);
-        let turning =
-            [cross_add::<C>(omega, force, turned_force), cross_add::<C>(both::<C>(generator[1]), force, turned_moment)];
-        let with_rate = beyond.momenta_add(twice_first, beyond.turn(twice_omega));
-        Vectors { turning, with_rate, second, twice_first, twice_omega }
-    }
-
-    /// `−∂r/∂q` and `−∂r/∂v` of some columns, given ∂f/∂q and ∂f/∂v row by row.
-    #[inline]
-    pub(super) fn columns(&self, first: usize, forces: [&[C::Number]; 2], out: [&mut [C::Block]; 2]) {
-        let n = self.links.len();
-        let Vectors { turning, with_rate, second, twice_first, twice_omega } = self.vectors(first);
-        let [by_q, by_v] = out;
-        for (i, ((own, of_q), of_v)) in self.rows.iter().zip(&mut *by_q).zip(&mut *by_v).enumerate() {
-            let above = || {
-                let [omega, upsilon] = [three::<C>(own, own::OMEGA), three::<C>(own, own::UPSILON)];
-                let power = |[force, moment]: Six<C>| dot_add::<C>(omega, moment, dot::<C>(upsilon, force));
-                [power(turning), power(with_rate)]
-            };
-            let below = || {
-                let [p, l] = [three::<C>(own, own::LINEAR_MOMENTUM), three::<C>(own, own::ANGULAR_MOMENTUM)];
-                let z = three::<C>(own, own::HALF_GYRATION);
-                let product = |[omega, upsilon]: Six<C>, of_z: Three<C>| {
-                    dot_add::<C>(l, omega, dot_add::<C>(p, upsilon, dot::<C>(z, of_z)))
-                };
-                [product(second, twice_first[0]), product(twice_first, twice_omega)]
-            };
-            let [mut products_q, mut products_v] = if i <= first {
-                above()
-            } else if i >= first + C::WIDTH {
-                below()
-            } else {
-                let ([below_q, below_v], [above_q, above_v]) = (below(), above());
-                [C::join(below_q, above_q, i - first), C::join(below_v, above_v, i - first)]
-            };
-            if !self.paths.is_empty() {
-                let on_path = C::load(self.paths.get(i * n + first..).unwrap_or_default());
-                [products_q, products_v] = [products_q * on_path, products_v * on_path];
-            }
-            let [force_q, force_v] = forces;
-            *of_q = -products_q + C::load(force_q.get(i * n + first..).unwrap_or_default());
-            *of_v = -products_v + C::load(force_v.get(i * n + first..).unwrap_or_default());
-        }
-    }
-
-    /// Subtracts from ∂f/∂q what a rotation vector, whose axes depend on its coordinates, adds to ∂r/∂q.
-    #[inline]
-    pub(super) fn subtract_diagonals(&self, of_q: &mut [C::Number]) {
-        let n = self.links.len();
-        let diagonals = self.factors.get(rows::DIAGONALS * n..).unwrap_or_default();
-        for (diagonal, entries) in diagonals.chunks_exact(n.max(1)).enumerate() {
-            for (i, added) in entries.iter().enumerate().filter(|(_, added)| !added.is_zero()) {
-                let place = (i * n + i + diagonal).checked_sub(2);
-                if let Some(entry) = place.and_then(|place| of_q.get_mut(place)) {
-                    *entry = *entry + -*added;
+    fn vectors(factors: &[C::Unit; ROWS]) -> Vectors<C::Unit> {
+        let mut units = [[C::zero(); 15]; 2];
+        for lane in 0..C::WIDTH * C::STATES {
+            let vectors = Factors::<C>(factors, lane).vectors();
+            for which in 0..2 {
+                for place in 0..15 {
+                    units[which][place].as_mut()[lane] = vectors[which][place];
                 }
             }
         }
+        units
     }
 
-    /// What changes of some coordinates and of their rates do, about the world's origin, while everything beyond is rigid.
+    /// ∂r/∂q and ∂r/∂v of some columns in place of ∂f/∂q and ∂f/∂v, row by row; `paths`: see [`mark_paths`], or nothing.
     #[inline(always)]
-    pub(super) fn changes(&self, first: usize, changes: &mut [Changes<C>]) {
-        let Vectors { turning, with_rate, second, twice_first, twice_omega } = self.vectors(first);
-        let mut scratch = [zero::<C>(); 16];
-        let of_q = [turning[1], turning[0], second[0], second[1], twice_first[0]];
-        let of_v = [with_rate[1], with_rate[0], twice_first[0], twice_first[1], twice_omega];
-        for place in 0..15 {
-            for (is_rate, vectors) in [(false, &of_q), (true, &of_v)] {
-                C::store(vectors[place / 3][place % 3], &mut scratch);
-                for column in 0..C::WIDTH {
-                    let Some(change) = changes.get_mut(first + column) else { break };
-                    let of = if is_rate { &mut change.of_v } else { &mut change.of_q };
-                    of[place] = scratch[column];
+    pub(super) fn columns(&self, first: usize, paths: &[C::Number], matrices: [&mut [C::Number]; 2]) {
+        let n = self.links.len();
+        let vectors = Self::vectors(&self.factors(first));
+        for (matrix, units) in matrices.into_iter().zip(&vectors) {
+            for ((i, own), row) in self.rows.iter().enumerate().zip(matrix.chunks_exact_mut(n.max(1))) {
+                let row = row.get_mut(first..).unwrap_or_default();
+                let (mut entries, on_path) = (C::load(row), C::load(paths.get(i * n + first..).unwrap_or_default()));
+                for lane in 0..C::WIDTH * C::STATES {
+                    let own = |first: usize| three!(|k| C::of(&own[first + k], lane));
+                    let unit = |first: usize| three!(|k| units[first + k].as_ref()[lane]);
+                    let above = dot_add(own(own::OMEGA), unit(0), dot(own(own::UPSILON), unit(3)));
+                    let gyration = dot(own(own::HALF_GYRATION), unit(12));
+                    let below = dot_add(own(own::LINEAR_MOMENTUM), unit(9), gyration);
+                    let below = dot_add(own(own::ANGULAR_MOMENTUM), unit(6), below);
+                    let mut product = if i <= first + lane / C::STATES { above } else { below };
+                    if !paths.is_empty() {
+                        product = product * on_path.as_ref()[lane];
+                    }
+                    let entry = &mut entries.as_mut()[lane];
+                    *entry = -(-product + *entry);
                 }
+                C::store(&entries, row);
             }
         }
+    }
+
+    /// What a rotation vector, whose axes depend on its coordinates, adds to ∂r/∂q: places in the matrix, and numbers that are not zero.
+    #[inline(always)]
+    pub(super) fn diagonals(&self) -> impl Iterator<Item = (usize, &C::Number)> {
+        let n = self.links.len();
+        let numbers = self.factors.get(rows::DIAGONALS * n..).unwrap_or_default().iter().enumerate();
+        let others = numbers.filter(|(_, added)| !added.is_zero());
+        others.filter_map(move |(k, added)| Some(((k % n * n + k % n + k / n).checked_sub(2)?, added)))
     }
 }
 
 /// Marks pairs of coordinates one of which is on the path of the other.
 pub(super) fn mark_paths<C: Columns>(links: &[Link], paths: &mut [C::Number]) {
     let n = links.len();
-    paths.fill(zero::<C>());
+    paths.fill(C::Number::constant(0.0));
     for j in 0..n {
         let mut reached = Some(j);
         while let Some(i) = reached {
             for place in [i * n + j, j * n + i] {
                 if let Some(flag) = paths.get_mut(place) {
-                    *flag = one::<C>();
+                    *flag = C::Number::constant(1.0);
                 }
             }
             reached = links.get(i).and_then(|link| link.before);

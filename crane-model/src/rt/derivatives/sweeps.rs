@@ -1,34 +1,28 @@
-//! Solutions of `A x = r` for columns r that lie side by side in lanes, by an inward and an outward sweep.
-//!
-//! Plain loops over the lanes: the compiler makes vectors of them, as wide as the target has.
+//! Columns of A⁻¹ that lie side by side in lanes, by an inward and an outward sweep, and their products with what changes of coordinates do.
 
 #![expect(clippy::inline_always, reason = "inlined where wider vectors are known, loops use them")]
 
 use core::ops::Range;
 
+use super::changes::Changes;
 use super::columns::{Columns, Constant};
-use super::vectors::zero;
+use super::vectors::{cross_add, cross_subtract, dot, dot_add, scaled_add, three};
 use super::{Link, Own};
-use crate::rt::fused::fma;
 
-/// Lanes of a row, at most.
-pub(super) const LANES: usize = 48;
-/// How many lanes make a vector; the compiler knows that there is no part of one.
-pub(super) const fn unit<C: Columns>() -> usize {
-    if C::WIDTH == 1 { 1 } else { 8 }
-}
+/// Columns that are swept together, at most.
+pub const COLUMNS: usize = 48;
 
-/// The numbers of a coordinate in all lanes.
-pub type Row<C> = [<C as Columns>::Number; LANES];
-/// Moment and force; or angular and linear acceleration, and rates of which coordinates beyond know the effect: x, y and z of each, in all lanes.
-pub type Lanes<C> = [Row<C>; 9];
+/// Of a coordinate, in the lanes of a unit: A⁻¹, and entries of ∂q̈/∂q and ∂q̈/∂v.
+pub type Entry<C> = [<C as Columns>::Unit; 3];
+/// Moment, force and answers to angular rates; or angular and linear acceleration: x, y and z of each, in the lanes of a unit.
+pub type Carried<C> = [<C as Columns>::Unit; 9];
 
 /// Storage for the sweeps.
 pub struct States<'a, C: Columns> {
-    /// Where a sweep is.
-    pub now: &'a mut Lanes<C>,
-    /// Where branches begin: an entry for each coordinate; empty if there are none.
-    pub reached: &'a mut [Lanes<C>],
+    /// Where a sweep is: an entry for each unit of a row.
+    pub now: &'a mut [Carried<C>],
+    /// Where branches begin: as many for each coordinate; empty if there are none.
+    pub reached: &'a mut [Carried<C>],
 }
 
 /// Places of the factors of A⁻¹.
@@ -48,129 +42,123 @@ pub struct Joint<C: Columns> {
     pub(super) own: Own<C>,
     /// Whether its point is not that of the coordinate before it.
     is_apart: bool,
-    /// Whether a branch begins at it.
+    /// Whether a branch begins beyond it.
     carries: bool,
+    /// Behind the last coordinate beyond it.
+    pub(super) end: usize,
 }
 
 impl<C: Columns> Joint<C> {
     /// All zero.
     pub fn zero() -> Self {
-        Joint { own: [zero::<C>(); 16], is_apart: false, carries: false }
+        Joint { own: [C::Number::constant(0.0); 16], is_apart: false, carries: false, end: 0 }
     }
 
+    /// Numbers of the coordinate in a lane.
     #[inline(always)]
-    pub(super) fn three(&self, first: usize) -> [C::Number; 3] {
-        let at = |place: usize| self.own.get(place).copied().unwrap_or(zero::<C>());
-        [at(first), at(first + 1), at(first + 2)]
+    fn three(&self, first: usize, lane: usize) -> [C::Lane; 3] {
+        three!(|k| C::of(&self.own[first + k], lane))
     }
 
+    /// The wrench before a coordinate from that beyond it, and `g/D` in place of r; what accelerations and rates beyond it cause.
     #[inline(always)]
-    fn minus(&self, first: usize) -> [C::Number; 3] {
-        let [x, y, z] = self.three(first);
-        [-x, -y, -z]
-    }
-
-    /// The wrench before a coordinate from that beyond it, and `g/D` in place of r.
-    #[inline(always)]
-    fn inward<const ROTATES: bool, const APART: bool>(&self, wrench: &mut Lanes<C>, row: &mut Row<C>, units: usize) {
-        let axis = self.minus(mass::AXIS);
-        let (of_force, of_moment) = (self.three(mass::FORCE), self.three(mass::MOMENT));
-        let (d, back) = (self.three(mass::OFFSET), self.minus(mass::OFFSET));
-        let [reciprocal, ..] = self.three(mass::RECIPROCAL);
-        let [m0, m1, m2, f0, f1, f2, ..] = wrench;
-        for k in 0..unit::<C>() * units.min(LANES / unit::<C>()) {
-            let (m, f) = ([m0[k], m1[k], m2[k]], [f0[k], f1[k], f2[k]]);
-            let along = if ROTATES { m } else { f };
-            let g = fma(axis[0], along[0], fma(axis[1], along[1], fma(axis[2], along[2], row[k])));
-            let f = [fma(of_force[0], g, f[0]), fma(of_force[1], g, f[1]), fma(of_force[2], g, f[2])];
-            let mut m = [fma(of_moment[0], g, m[0]), fma(of_moment[1], g, m[1]), fma(of_moment[2], g, m[2])];
-            if APART {
-                m = [
-                    fma(d[1], f[2], fma(back[2], f[1], m[0])),
-                    fma(d[2], f[0], fma(back[0], f[2], m[1])),
-                    fma(d[0], f[1], fma(back[1], f[0], m[2])),
-                ];
-            }
-            row[k] = reciprocal * g;
-            [m0[k], m1[k], m2[k]] = m;
-            [f0[k], f1[k], f2[k]] = f;
-        }
-    }
-
-    /// The acceleration beyond a coordinate from that before it, and x in place of `g/D`.
-    #[inline(always)]
-    fn outward<const ROTATES: bool, const APART: bool>(
+    fn inward<const ROTATES: bool, const APART: bool, const CAUSES: bool>(
         &self,
-        has_rates: bool,
-        accelerations: &mut Lanes<C>,
-        row: &mut Row<C>,
-        units: usize,
+        Changes { of: [by_q, by_v], .. }: &Changes<C>,
+        places: &mut [Carried<C>],
+        row: &mut [Entry<C>],
     ) {
-        let axis = self.three(mass::AXIS);
-        let (of_force, of_moment) = (self.minus(mass::FORCE), self.minus(mass::MOMENT));
-        let (d, back) = (self.three(mass::OFFSET), self.minus(mass::OFFSET));
-        let answer = self.three(mass::ANSWER);
-        let [a0, a1, a2, l0, l1, l2, s0, s1, s2] = accelerations;
-        for k in 0..unit::<C>() * units.min(LANES / unit::<C>()) {
-            let (angular, mut linear) = ([a0[k], a1[k], a2[k]], [l0[k], l1[k], l2[k]]);
-            if APART {
-                linear = [
-                    fma(back[1], angular[2], fma(d[2], angular[1], linear[0])),
-                    fma(back[2], angular[0], fma(d[0], angular[2], linear[1])),
-                    fma(back[0], angular[1], fma(d[1], angular[0], linear[2])),
-                ];
+        for k in 0..places.len().min(row.len()) {
+            let (mut carried, [mut x, mut of_q, mut of_v]) = (places[k], row[k]);
+            for lane in 0..C::WIDTH * C::STATES {
+                let at = |first: usize| three!(|k| carried[first + k].as_ref()[lane]);
+                let own = |first: usize| self.three(first, lane);
+                let ([m, f], axis) = ([at(0), at(3)], own(mass::AXIS));
+                let minus = [-axis[0], -axis[1], -axis[2]];
+                let g = dot_add(minus, if ROTATES { m } else { f }, x.as_ref()[lane]);
+                if CAUSES {
+                    let s = at(6);
+                    for (of, by) in [(&mut of_q, by_q), (&mut of_v, by_v)] {
+                        let by = |first: usize| three!(|k| C::of(&by[first + k], lane));
+                        of.as_mut()[lane] = dot_add(m, by(6), dot(f, by(9))) + dot(s, by(12));
+                    }
+                    set::<C>(&mut carried, 6, lane, scaled_add(own(mass::ANSWER), g, s));
+                }
+                let (f, mut m) = (scaled_add(own(mass::FORCE), g, f), scaled_add(own(mass::MOMENT), g, m));
+                if APART {
+                    m = cross_add(own(mass::OFFSET), f, m);
+                }
+                x.as_mut()[lane] = C::of(&self.own[mass::RECIPROCAL], lane) * g;
+                set::<C>(&mut carried, 0, lane, m);
+                set::<C>(&mut carried, 3, lane, f);
             }
-            let mut x = row[k];
-            if has_rates {
-                x = fma(answer[0], s0[k], fma(answer[1], s1[k], fma(answer[2], s2[k], x)));
-            }
-            x = fma(of_moment[0], angular[0], fma(of_moment[1], angular[1], fma(of_moment[2], angular[2], x)));
-            x = x + fma(of_force[0], linear[0], fma(of_force[1], linear[1], of_force[2] * linear[2]));
-            row[k] = x;
-            if ROTATES {
-                [a0[k], a1[k], a2[k]] =
-                    [fma(axis[0], x, angular[0]), fma(axis[1], x, angular[1]), fma(axis[2], x, angular[2])];
-            } else {
-                linear = [fma(axis[0], x, linear[0]), fma(axis[1], x, linear[1]), fma(axis[2], x, linear[2])];
-            }
-            if APART || !ROTATES {
-                [l0[k], l1[k], l2[k]] = linear;
-            }
+            (places[k], row[k]) = (carried, [x, of_q, of_v]);
         }
+    }
+
+    /// The acceleration beyond a coordinate from that before it, and x in place of `g/D`; what wrenches beyond it cause.
+    #[inline(always)]
+    fn outward<const ROTATES: bool, const APART: bool, const CAUSES: bool>(
+        &self,
+        Changes { of: [by_q, by_v], .. }: &Changes<C>,
+        places: &mut [Carried<C>],
+        row: &mut [Entry<C>],
+    ) {
+        for k in 0..places.len().min(row.len()) {
+            let (mut carried, [mut x, mut of_q, mut of_v]) = (places[k], row[k]);
+            for lane in 0..C::WIDTH * C::STATES {
+                let at = |first: usize| three!(|k| carried[first + k].as_ref()[lane]);
+                let own = |first: usize| self.three(first, lane);
+                let (mut angular, mut linear) = (at(0), at(3));
+                if APART {
+                    linear = cross_subtract(own(mass::OFFSET), angular, linear);
+                }
+                let minus = |[x, y, z]: [C::Lane; 3]| [-x, -y, -z];
+                let by_moment = dot_add(minus(own(mass::MOMENT)), angular, x.as_ref()[lane]);
+                let found = by_moment + dot(minus(own(mass::FORCE)), linear);
+                x.as_mut()[lane] = found;
+                let moved = if ROTATES { &mut angular } else { &mut linear };
+                *moved = scaled_add(own(mass::AXIS), found, *moved);
+                if CAUSES {
+                    for (of, by) in [(&mut of_q, by_q), (&mut of_v, by_v)] {
+                        let by = |first: usize| three!(|k| C::of(&by[first + k], lane));
+                        let entry = &mut of.as_mut()[lane];
+                        *entry = dot_add(angular, by(0), *entry) + dot(linear, by(3));
+                    }
+                }
+                if ROTATES {
+                    set::<C>(&mut carried, 0, lane, angular);
+                }
+                if APART || !ROTATES {
+                    set::<C>(&mut carried, 3, lane, linear);
+                }
+            }
+            (places[k], row[k]) = (carried, [x, of_q, of_v]);
+        }
+    }
+}
+
+/// Writes three numbers of a lane.
+#[inline(always)]
+fn set<C: Columns>(carried: &mut Carried<C>, first: usize, lane: usize, numbers: [C::Lane; 3]) {
+    for k in 0..3 {
+        carried[first + k].as_mut()[lane] = numbers[k];
     }
 }
 
 /// Calls one of the forms of a loop.
 macro_rules! formed {
-    ($joint:ident.$pass:ident($rotates:expr) $arguments:tt) => {
+    ($joint:ident.$pass:ident::<$causes:ident>($rotates:expr) $arguments:tt) => {
         match ($rotates, $joint.is_apart) {
-            (true, true) => formed!(@ $joint.$pass::<true, true> $arguments),
-            (true, false) => formed!(@ $joint.$pass::<true, false> $arguments),
-            (false, true) => formed!(@ $joint.$pass::<false, true> $arguments),
-            (false, false) => formed!(@ $joint.$pass::<false, false> $arguments),
+            (true, true) => formed!(@ $joint.$pass::<true, true, $causes> $arguments),
+            (true, false) => formed!(@ $joint.$pass::<true, false, $causes> $arguments),
+            (false, true) => formed!(@ $joint.$pass::<false, true, $causes> $arguments),
+            (false, false) => formed!(@ $joint.$pass::<false, false, $causes> $arguments),
         }
     };
-    (@ $joint:ident.$pass:ident::<$rotates:literal, $apart:literal> ($($argument:expr),*)) => {
-        $joint.$pass::<$rotates, $apart>($($argument),*)
+    (@ $joint:ident.$pass:ident::<$rotates:literal, $apart:literal, $causes:ident> ($($argument:expr),*)) => {
+        $joint.$pass::<$rotates, $apart, $causes>($($argument),*)
     };
-}
-
-/// What happens on the way.
-pub(super) trait Visit<C: Columns> {
-    /// The wrench arrives at a coordinate.
-    fn enter(&mut self, j: usize, wrench: &mut Lanes<C>);
-    /// The acceleration beyond a coordinate is known.
-    fn leave(&mut self, j: usize, accelerations: &mut Lanes<C>);
-}
-
-/// Nothing happens.
-pub(super) struct Nothing;
-
-impl<C: Columns> Visit<C> for Nothing {
-    #[inline(always)]
-    fn enter(&mut self, _: usize, _: &mut Lanes<C>) {}
-    #[inline(always)]
-    fn leave(&mut self, _: usize, _: &mut Lanes<C>) {}
 }
 
 /// The sweeps.
@@ -183,121 +171,123 @@ impl<'a, C: Columns> Sweeps<'a, C> {
     /// `factors`: those of [`mass_factors`](crate::MotionDerivatives::mass_factors), row by row.
     #[inline(always)]
     pub(super) fn new(links: &'a [Link], factors: &[C::Number], joints: &'a mut [Joint<C>]) -> Self {
-        for (place, row) in factors.chunks_exact(links.len().max(1)).enumerate() {
-            for (joint, factor) in joints.iter_mut().zip(row) {
-                if let Some(number) = joint.own.get_mut(place) {
-                    *number = *factor;
+        for j in 0..links.len() {
+            let Some(joint) = joints.get_mut(j) else { break };
+            for place in 0..mass::ANSWER {
+                if let Some(factor) = factors.get(place * links.len() + j) {
+                    joint.own[place] = *factor;
                 }
             }
         }
-        for joint in &mut *joints {
-            joint.is_apart = !joint.three(mass::OFFSET).iter().all(Constant::is_zero);
-            joint.carries = false;
+        for (j, joint) in joints.iter_mut().enumerate() {
+            joint.is_apart = !joint.own[mass::OFFSET..mass::OFFSET + 3].iter().all(Constant::is_zero);
+            (joint.carries, joint.end) = (false, j + 1);
         }
-        for (_, link) in links.iter().enumerate().filter(|(place, link)| !link.continues(*place)) {
+        for (j, link) in links.iter().enumerate().rev() {
+            let end = joints.get(j).map_or(0, |joint| joint.end);
             if let Some(joint) = link.before.and_then(|before| joints.get_mut(before)) {
-                joint.carries = true;
+                joint.end = joint.end.max(end);
+                joint.carries |= !link.continues(j);
             }
         }
         Sweeps { links, joints }
     }
 
-    /// From the last of some coordinates to the first: `g/D` in place of r. `enter` may add to the wrench that arrives at a coordinate.
+    /// From the last of some coordinates to the first: `g/D` in place of r, and what accelerations and rates beyond each coordinate cause, if
+    /// there are `changes`. `units`: those in which r of what is beyond a coordinate is not zero; `arrive` sees the wrench that arrives there.
     #[inline(always)]
-    pub(super) fn inward(
+    pub(super) fn inward<const CAUSES: bool>(
         &self,
         coordinates: Range<usize>,
-        rows: &mut [Row<C>],
-        units: usize,
+        units: impl Fn(usize) -> Range<usize>,
+        swept: &mut [Entry<C>],
         States { now, reached }: &mut States<'_, C>,
-        visit: &mut impl Visit<C>,
+        changes: &[Changes<C>],
+        mut arrive: impl FnMut(usize, &[Carried<C>]),
     ) {
-        let wrench = &mut **now;
-        for j in coordinates.start..coordinates.end {
-            if let (Some(Joint { carries: true, .. }), Some(state)) = (self.joints.get(j), reached.get_mut(j)) {
-                clear::<C>(state, units);
-            }
+        let (stride, none) = (now.len(), Changes::zero());
+        for j in coordinates.clone().filter(|j| self.joints.get(*j).is_some_and(|joint| joint.carries)) {
+            clear::<C>(part(reached, stride, j, &(0..stride)));
         }
-        clear::<C>(wrench, units);
-        for j in (coordinates.start..coordinates.end).rev() {
-            let (Some(link), Some(joint), Some(row)) = (self.links.get(j), self.joints.get(j), rows.get_mut(j)) else {
-                continue;
-            };
-            if joint.carries
-                && let Some(brought) = reached.get(j)
-            {
-                add::<C>(wrench, brought, units);
+        clear::<C>(now);
+        for j in coordinates.rev() {
+            let (Some(link), Some(joint), units) = (self.links.get(j), self.joints.get(j), units(j)) else { continue };
+            let wrench = now.get_mut(units.clone()).unwrap_or_default();
+            if joint.carries {
+                add::<C>(wrench, part(reached, stride, j, &units));
             }
-            visit.enter(j, wrench);
-            formed!(joint.inward(link.rotates)(wrench, row, units));
+            arrive(j, wrench);
+            let (change, row) = (changes.get(j).unwrap_or(&none), part(swept, stride, j, &units));
+            formed!(joint.inward::<CAUSES>(link.rotates)(change, wrench, row));
             if !link.continues(j) {
-                if let Some(brought) = link.before.and_then(|before| reached.get_mut(before)) {
-                    add::<C>(brought, wrench, units);
+                if let Some(before) = link.before {
+                    add::<C>(part(reached, stride, before, &units), wrench);
                 }
-                clear::<C>(wrench, units);
+                clear::<C>(wrench);
             }
         }
     }
 
-    /// From the first of some coordinates to the last: x in place of `g/D`. `leave` may add to the accelerations and
-    /// rates beyond a coordinate.
+    /// From the first of some coordinates to the last: x in place of `g/D`, and what wrenches beyond each coordinate cause, if there are `changes`.
     #[inline(always)]
-    pub(super) fn outward(
+    pub(super) fn outward<const CAUSES: bool>(
         &self,
         coordinates: Range<usize>,
-        has_rates: bool,
-        rows: &mut [Row<C>],
-        units: usize,
+        units: &Range<usize>,
+        swept: &mut [Entry<C>],
         States { now, reached }: &mut States<'_, C>,
-        visit: &mut impl Visit<C>,
+        changes: &[Changes<C>],
     ) {
-        let accelerations = &mut **now;
-        clear::<C>(accelerations, units);
-        for j in coordinates.start..coordinates.end {
-            let (Some(link), Some(joint), Some(row)) = (self.links.get(j), self.joints.get(j), rows.get_mut(j)) else {
-                continue;
-            };
+        let (stride, none) = (now.len(), Changes::zero());
+        let accelerations = now.get_mut(units.clone()).unwrap_or_default();
+        clear::<C>(accelerations);
+        for j in coordinates {
+            let (Some(link), Some(joint)) = (self.links.get(j), self.joints.get(j)) else { continue };
             if !link.continues(j) {
-                match link.before.and_then(|before| reached.get(before)) {
-                    Some(state) => copy::<C>(state, accelerations, units),
-                    None => clear::<C>(accelerations, units),
+                match link.before {
+                    Some(before) => copy::<C>(part(reached, stride, before, units), accelerations),
+                    None => clear::<C>(accelerations),
                 }
             }
-            formed!(joint.outward(link.rotates)(has_rates, accelerations, row, units));
-            visit.leave(j, accelerations);
-            if joint.carries
-                && let Some(state) = reached.get_mut(j)
-            {
-                copy::<C>(accelerations, state, units);
+            let (change, row) = (changes.get(j).unwrap_or(&none), part(swept, stride, j, units));
+            formed!(joint.outward::<CAUSES>(link.rotates)(change, accelerations, row));
+            if joint.carries {
+                copy::<C>(accelerations, part(reached, stride, j, units));
             }
         }
     }
 }
 
+/// Some units of a row.
 #[inline(always)]
-fn clear<C: Columns>(state: &mut Lanes<C>, units: usize) {
-    for row in state {
-        for k in 0..unit::<C>() * units.min(LANES / unit::<C>()) {
-            row[k] = zero::<C>();
-        }
+pub(super) fn part<'a, T>(rows: &'a mut [T], stride: usize, row: usize, units: &Range<usize>) -> &'a mut [T] {
+    rows.get_mut(row * stride + units.start..row * stride + units.end).unwrap_or_default()
+}
+
+#[inline(always)]
+fn clear<C: Columns>(carried: &mut [Carried<C>]) {
+    for k in 0..carried.len() {
+        carried[k] = [C::zero(); 9];
     }
 }
 
 #[inline(always)]
 #[expect(clippy::manual_memcpy, reason = "short: a call would take longer than the loop")]
-fn copy<C: Columns>(from: &Lanes<C>, to: &mut Lanes<C>, units: usize) {
-    for (from, to) in from.iter().zip(to) {
-        for k in 0..unit::<C>() * units.min(LANES / unit::<C>()) {
-            to[k] = from[k];
-        }
+fn copy<C: Columns>(from: &[Carried<C>], to: &mut [Carried<C>]) {
+    for k in 0..from.len().min(to.len()) {
+        to[k] = from[k];
     }
 }
 
 #[inline(always)]
-fn add<C: Columns>(sum: &mut Lanes<C>, other: &Lanes<C>, units: usize) {
-    for (sum, other) in sum.iter_mut().zip(other).take(6) {
-        for k in 0..unit::<C>() * units.min(LANES / unit::<C>()) {
-            sum[k] = sum[k] + other[k];
+fn add<C: Columns>(places: &mut [Carried<C>], other: &[Carried<C>]) {
+    for k in 0..places.len().min(other.len()) {
+        let (mut sums, others) = (places[k], other[k]);
+        for place in 0..9 {
+            for lane in 0..C::WIDTH * C::STATES {
+                sums[place].as_mut()[lane] = sums[place].as_ref()[lane] + others[place].as_ref()[lane];
+            }
         }
+        places[k] = sums;
     }
 }

@@ -5,7 +5,7 @@ use crane_model::dyn_crane::{
     DynDerivatives, DynDynamics, DynInternalForces, DynLinearise, DynMotionDerivatives, DynStatics,
 };
 use crane_model::nalgebra::Matrix4;
-use crane_model::rt::derivatives::Sixteen;
+use crane_model::rt::derivatives::EightColumns;
 use crane_model::{entry_type, slice_argument};
 use crane_quantities::{Count, quantities};
 
@@ -13,6 +13,7 @@ use super::methods::{method, methods};
 use super::{LiveCrane, at, copy};
 use crate::derivatives::Storage;
 use crate::machine::Arguments;
+use crate::routine::Routine;
 
 impl DynStatics for LiveCrane {
     quantities! { methods of Statics }
@@ -48,13 +49,13 @@ impl DynMotionDerivatives for LiveCrane {
         let mut factors = vec![0.0; Count::RESIDUAL_FACTORS * q.len()];
         self.residual_factors(q, v, a, &mut factors);
         self.force_derivatives(t, q, v, out);
-        Storage::<Sixteen>::new(self.links()).residual_derivatives(&factors, out);
+        Storage::<EightColumns>::new(self.links()).residual_derivatives(&factors, out);
     }
 
     fn inverse_mass_matrix(&self, q: &[f64], out: &mut [f64]) {
         let mut factors = vec![0.0; Count::MASS_FACTORS * q.len()];
         self.mass_factors(q, &mut factors);
-        Storage::<Sixteen>::new(self.links()).inverse_mass_matrix(&factors, out);
+        Storage::<EightColumns>::new(self.links()).inverse_mass_matrix(&factors, out);
     }
 
     fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
@@ -65,8 +66,12 @@ impl DynMotionDerivatives for LiveCrane {
             [Count::RESIDUAL_FACTORS, Count::MASS_FACTORS].map(|count| vec![0.0; count * n]);
         self.residual_factors(q, v, &a, &mut of_residual);
         self.mass_factors(q, &mut of_mass);
-        self.force_derivatives(t, q, v, &mut out[..2 * n * n]);
-        Storage::<Sixteen>::new(self.links()).forward_dynamics_derivatives([&of_residual, &of_mass], out);
+        let mut forces = vec![0.0; 2 * n * n];
+        self.force_derivatives(t, q, v, &mut forces);
+        let library = self.library();
+        let places = library.routine(FunctionId::ForceDerivatives).map_or(&[][..], Routine::places);
+        let factors = [&*of_residual, &of_mass];
+        Storage::<EightColumns>::new(self.links()).forward_dynamics_derivatives(factors, (&forces, places), out);
     }
 
     quantities! { methods of MotionDerivatives }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crane_codegen::program::{Argument, Count, Extent, FunctionId, Shape};
 use crane_model::dyn_crane::DynModel;
-use crane_model::rt::derivatives::{Link, Sixteen};
+use crane_model::rt::derivatives::Columns;
 use crane_model::rt::fill_tangent;
 
 use crate::LiveCrane;
@@ -46,11 +46,10 @@ pub struct Evaluation<T: Number> {
     lanes: Lanes<T>,
     /// The coordinates of the drives.
     driven: Vec<usize>,
-    /// For derivatives of the dynamics: of these numbers, and of each state.
+    /// For derivatives of the dynamics, the factors of A⁻¹ and of the derivatives of the residual, and the derivatives of forces.
     storage: Storage<T::Columns>,
-    of_states: OfStates,
-    /// The factors of A⁻¹ and of the derivatives of the residual.
     factors: [Vec<T>; 2],
+    forces: Vec<T>,
     /// The crane's inputs.
     inputs: Vec<T>,
     /// The results of the states.
@@ -107,9 +106,9 @@ impl<T: Number> Evaluation<T> {
             sizes: [crane.size(), crane.parameters().len()],
             calls: ids.map(|id| Call::new(crane, id?)),
             lanes: Lanes::new(),
-            storage: Storage::new(links.clone()),
-            of_states: OfStates::new(links),
+            storage: Storage::new(links),
             factors: [vec![], vec![]],
+            forces: vec![T::splat(0.0); if function == F::ForwardDynamicsDerivatives { 2 * width / 3 } else { 0 }],
             driven: crane.description().drives.iter().map(|drive| drive.coordinate).collect(),
             inputs: crane.inputs().numbers().map(T::splat).collect(),
             results: vec![T::splat(0.0); width],
@@ -136,23 +135,14 @@ impl<T: Number> Evaluation<T> {
         self.inputs.extend_from_slice(inputs);
     }
 
-    /// The results at one state, with the crane's parameters.
-    pub(crate) fn at(&mut self, t: T, q: &[T], v: &[T], a: &[T]) -> &[T] {
-        let Lanes { t: times, q: poses, v: rates, a: accelerations, .. } = &mut self.lanes;
-        for (lanes, given) in [(times, [t].as_slice()), (poses, q), (rates, v), (accelerations, a)] {
-            lanes.clear();
-            lanes.extend_from_slice(given);
-        }
-        self.evaluate();
-        &self.results
-    }
-
-    /// Computes the factors of A⁻¹ and of its products, with ∂f in their place among the results, if the function is of these.
-    fn take_factors(&mut self) -> bool {
-        let Self { calls, lanes, inputs, results, library, factors: [of_mass, of_residual], .. } = self;
-        let n = lanes.q.len();
+    /// Computes products with A⁻¹ of the states taken, one state after the other, if the function is of these.
+    fn multiply(&mut self, out: &mut [<T::Columns as Columns>::Lane]) -> bool {
+        let Self { calls, lanes, inputs, library, storage, factors: [of_mass, of_residual], forces, .. } = self;
         match (self.function, calls) {
-            (FunctionId::InverseMassMatrix, [Some(mass), ..]) => mass.write_factors(library, lanes, inputs, of_mass),
+            (FunctionId::InverseMassMatrix, [Some(mass), ..]) => {
+                mass.write_factors(library, lanes, inputs, of_mass);
+                storage.inverse_mass_matrix(of_mass, out);
+            }
             (
                 FunctionId::ForwardDynamicsDerivatives,
                 [Some(accelerations), Some(slopes), Some(residual), Some(mass)],
@@ -160,9 +150,11 @@ impl<T: Number> Evaluation<T> {
                 let mut a = std::mem::take(&mut lanes.a);
                 accelerations.write_factors(library, lanes, inputs, &mut a);
                 lanes.a = a;
-                slopes.run(library, lanes, inputs, &mut results[..2 * n * n]);
+                slopes.run(library, lanes, inputs, forces);
                 residual.write_factors(library, lanes, inputs, of_residual);
                 mass.write_factors(library, lanes, inputs, of_mass);
+                let places = library.routine(FunctionId::ForceDerivatives).map_or(&[][..], Routine::places);
+                storage.forward_dynamics_derivatives([of_residual, of_mass], (forces, places), out);
             }
             _ => return false,
         }
@@ -171,15 +163,6 @@ impl<T: Number> Evaluation<T> {
 
     /// Computes the results of the states taken.
     fn evaluate(&mut self) {
-        if self.take_factors() {
-            let [of_mass, of_residual] = &self.factors;
-            if self.function == FunctionId::InverseMassMatrix {
-                self.storage.inverse_mass_matrix(of_mass, &mut self.results);
-            } else {
-                self.storage.forward_dynamics_derivatives([of_residual, of_mass], &mut self.results);
-            }
-            return;
-        }
         let Self { calls, lanes, driven, storage, inputs, results, library, absent, factors: [_, of_residual], .. } =
             self;
         let n = lanes.q.len();
@@ -210,6 +193,24 @@ impl<T: Number> Evaluation<T> {
     }
 }
 
+impl<T: Number<Columns: Columns<Lane = T>>> Evaluation<T> {
+    /// The results at one state, with the crane's parameters.
+    pub(crate) fn at(&mut self, t: T, q: &[T], v: &[T], a: &[T]) -> &[T] {
+        let Lanes { t: times, q: poses, v: rates, a: accelerations, .. } = &mut self.lanes;
+        for (lanes, given) in [(times, [t].as_slice()), (poses, q), (rates, v), (accelerations, a)] {
+            lanes.clear();
+            lanes.extend_from_slice(given);
+        }
+        let mut results = std::mem::take(&mut self.results);
+        let multiplied = self.multiply(&mut results);
+        self.results = results;
+        if !multiplied {
+            self.evaluate();
+        }
+        &self.results
+    }
+}
+
 impl<T: Number> std::fmt::Debug for Evaluation<T> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Evaluation").field("function", &self.function).finish_non_exhaustive()
@@ -229,50 +230,11 @@ impl<T: Batch> Evaluation<T> {
                     call.set_parameters(&self.library, &self.lanes.parameters);
                 }
             }
-            if self.lanes.q.len() >= MANY && self.take_factors() {
-                self.of_states.multiply(&self.factors, &self.results, self.width, several);
-            } else {
+            if !self.multiply(several) {
                 self.evaluate();
                 spread(&self.results, self.width, several);
             }
             first += count;
-        }
-    }
-}
-
-/// From as many coordinates on, matrices of one state after the other take less time than those of eight states.
-const MANY: usize = 16;
-
-/// Storage for several states, one after the other: matrices of one fit into the processor's caches.
-struct OfStates {
-    storage: Storage<Sixteen>,
-    factors: [Vec<f64>; 2],
-}
-
-impl OfStates {
-    fn new(links: Vec<Link>) -> Self {
-        Self { storage: Storage::new(links), factors: [vec![], vec![]] }
-    }
-
-    /// A⁻¹, or its products and itself, of some states, `width` numbers each.
-    fn multiply<T: Batch>(&mut self, factors: &[Vec<T>; 2], forces: &[T], width: usize, out: &mut [f64]) {
-        for (own, factors) in self.factors.iter_mut().zip(factors) {
-            own.resize(T::LANES * factors.len(), 0.0);
-            spread(factors, factors.len(), own);
-        }
-        let [of_mass, of_residual] = &self.factors;
-        let [mass, residual] = [0, 1].map(|which| factors[which].len());
-        if residual > 0 {
-            spread(&forces[..2 * width / 3], width, out);
-        }
-        for (lane, out) in out.chunks_mut(width.max(1)).enumerate() {
-            let of_mass = &of_mass[lane * mass..(lane + 1) * mass];
-            if residual == 0 {
-                self.storage.inverse_mass_matrix(of_mass, out);
-            } else {
-                let of_residual = &of_residual[lane * residual..(lane + 1) * residual];
-                self.storage.forward_dynamics_derivatives([of_residual, of_mass], out);
-            }
         }
     }
 }
