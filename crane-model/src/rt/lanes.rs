@@ -51,7 +51,11 @@ impl Function for f64x8 {
 
     #[inline]
     fn exp(self) -> f64x8 {
-        f64x8::new(self.to_array().map(Function::exp))
+        let mut numbers = self.to_array();
+        for number in &mut numbers {
+            *number = exp(*number);
+        }
+        f64x8::new(numbers)
     }
 
     #[inline]

@@ -1,7 +1,5 @@
 //! Derivatives of the dynamics from their factors.
 
-#![expect(clippy::inline_always, reason = "inlined where wider vectors are known, loops use them")]
-
 use std::iter::Copied;
 use std::slice::Iter;
 

@@ -36,7 +36,7 @@ impl<C: Columns> Changes<C> {
 
     /// From the world's origin to the point; `carried`: what arrives there for unit accelerations and rates.
     #[inline(always)]
-    fn give_way(&mut self, carried: &[Carried<C>]) {
+    pub(super) fn give_way(&mut self, carried: &[Carried<C>]) {
         /// Places of the accelerations and rates, in the order of the columns.
         const PLACES: [usize; COLUMNS] = [9, 10, 11, 6, 7, 8, 12, 13, 14];
         let mut wrenches = [[C::Number::constant(0.0); 8]; 2];
@@ -54,25 +54,36 @@ impl<C: Columns> Changes<C> {
                 wrenches[which][k] = C::number(&units[k]);
             }
         }
+        let mut sums = [[C::zero(); 6]; 2];
+        for which in 0..2 {
+            for unit in 0..6usize.div_ceil(C::WIDTH) {
+                sums[which][unit] = C::load(wrenches[which].get(unit * C::WIDTH..).unwrap_or_default());
+            }
+        }
         for unit in 0..carried.len().min(COLUMNS.div_ceil(C::WIDTH)) {
-            let [c0, c1, c2, c3, c4, c5, ..] = carried[unit];
             for pair in 0..C::WIDTH.div_ceil(2) {
-                let columns = C::columns(&[c0, c1, c2, c3, c4, c5, c5, c5], pair);
+                let columns = C::columns(&carried[unit], pair);
                 for side in 0..C::WIDTH.min(2) {
                     let column = unit * C::WIDTH + 2 * pair + side;
                     if column >= COLUMNS {
                         break;
                     }
-                    for which in 0..2 {
-                        let (by, mut wrench) = (self.of[which][PLACES[column]], wrenches[which]);
-                        for k in 0..8 {
-                            wrench[k] = combine::<C, 3>([&by, &columns[side][k], &wrench[k]], |[by, of, sum]| {
-                                fma(-by, of, sum)
-                            });
+                    let by = [self.of[0][PLACES[column]], self.of[1][PLACES[column]]];
+                    for lane in 0..C::WIDTH * C::STATES {
+                        for unit in 0..6usize.div_ceil(C::WIDTH) {
+                            let of = columns[side][unit].as_ref()[lane];
+                            for which in 0..2 {
+                                let sum = &mut sums[which][unit].as_mut()[lane];
+                                *sum = fma(-C::of(&by[which], lane), of, *sum);
+                            }
                         }
-                        wrenches[which] = wrench;
                     }
                 }
+            }
+        }
+        for which in 0..2 {
+            for unit in 0..6usize.div_ceil(C::WIDTH) {
+                C::store(&sums[which][unit], wrenches[which].get_mut(unit * C::WIDTH..).unwrap_or_default());
             }
         }
         for which in 0..2 {
@@ -118,12 +129,7 @@ pub(super) fn give_way<C: Columns>(
             row[unit][0] = C::load(&own[own::LINEAR_MOMENTUM + unit * C::WIDTH..own::LINEAR_MOMENTUM + COLUMNS]);
         }
     }
-    let arrive = |j: usize, carried: &[Carried<C>]| {
-        if let Some(change) = changes.get_mut(j) {
-            change.give_way(carried);
-        }
-    };
-    sweeps.inward::<false>(0..n, |_| 0..units, swept, states, &[], arrive);
+    sweeps.inward::<false>(0..n, |_| 0..units, swept, states, &[], changes);
     for (joint, row) in sweeps.joints.iter_mut().zip(swept.chunks_exact(stride.max(1))) {
         for k in 0..3 {
             let column = COLUMNS - 3 + k;

@@ -1,6 +1,7 @@
 //! Columns of a matrix that are computed together.
 
 #![expect(clippy::inline_always, reason = "inlined where wider vectors are known, loops use them")]
+#![expect(clippy::manual_memcpy, reason = "short: a call would take longer than the loop")]
 
 use core::marker::PhantomData;
 use core::ops::{Add, Mul, Neg};
@@ -42,8 +43,8 @@ pub trait Columns: Copy {
     fn load(row: &[Self::Number]) -> Self::Unit;
     /// The numbers of eight units in two neighbouring lanes.
     fn across(units: &[Self::Unit; 8], pair: usize) -> [[Self::Lane; 8]; 2];
-    /// The numbers of eight units in two neighbouring columns.
-    fn columns(units: &[Self::Unit; 8], pair: usize) -> [[Self::Number; 8]; 2];
+    /// Six of the numbers that are carried, in two neighbouring columns: as many units as hold them.
+    fn columns(carried: &[Self::Unit; 9], pair: usize) -> [[Self::Unit; 6]; 2];
     /// Writes as many numbers as the row has.
     fn store(unit: &Self::Unit, row: &mut [Self::Number]);
 }
@@ -135,8 +136,9 @@ impl Columns for EightColumns {
     }
 
     #[inline(always)]
-    fn columns(units: &[Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
-        across(units, pair)
+    fn columns([a, b, c, d, e, f, ..]: &[Lanes<f64, 8>; 9], pair: usize) -> [[Lanes<f64, 8>; 6]; 2] {
+        let [one, other] = across(&[*a, *b, *c, *d, *e, *f, *f, *f], pair);
+        [[Lanes(one); 6], [Lanes(other); 6]]
     }
 }
 
@@ -184,12 +186,8 @@ impl Columns for EightStates {
     }
 
     #[inline(always)]
-    fn columns(units: &[Lanes<f64, 8>; 8], _: usize) -> [[f64x8; 8]; 2] {
-        let mut numbers = [[f64x8::ZERO; 8]; 2];
-        for k in 0..8 {
-            numbers[0][k] = f64x8::new(units[k].0);
-        }
-        numbers
+    fn columns([a, b, c, d, e, f, ..]: &[Lanes<f64, 8>; 9], _: usize) -> [[Lanes<f64, 8>; 6]; 2] {
+        [[*a, *b, *c, *d, *e, *f]; 2]
     }
 }
 
@@ -237,8 +235,8 @@ impl<T: Scalar> Columns for One<T> {
     }
 
     #[inline(always)]
-    fn columns(units: &[[T; 1]; 8], _: usize) -> [[T; 8]; 2] {
-        [units.map(|[number]| number); 2]
+    fn columns([a, b, c, d, e, f, ..]: &[[T; 1]; 9], _: usize) -> [[[T; 1]; 6]; 2] {
+        [[*a, *b, *c, *d, *e, *f]; 2]
     }
 }
 
@@ -270,6 +268,10 @@ impl Constant for f64x8 {
 
     #[inline(always)]
     fn is_zero(&self) -> bool {
-        self.as_array().iter().fold(true, |is_zero, number| is_zero & (*number == 0.0))
+        let mut is_zero = true;
+        for number in self.as_array() {
+            is_zero &= *number == 0.0;
+        }
+        is_zero
     }
 }

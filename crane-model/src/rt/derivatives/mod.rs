@@ -115,8 +115,8 @@ fn apart(links: &[Link]) -> impl Iterator<Item = Range<usize>> {
         let start = end;
         end = links.len();
         let mut first = end;
-        for (j, link) in links.iter().enumerate().skip(start + 1).rev() {
-            first = first.min(link.before.unwrap_or(j));
+        for j in (start + 1..end).rev() {
+            first = first.min(links.get(j).and_then(|link| link.before).unwrap_or(j));
             if first >= j {
                 end = j;
             }
@@ -175,7 +175,7 @@ impl Piece {
             let unit = |column: usize| column.saturating_sub(columns.start);
             unit(j) / C::WIDTH..unit(end).div_ceil(C::WIDTH)
         };
-        sweeps.inward::<CAUSES>(own.start..own.end, beyond, swept, states, changes, |_, _| {});
+        sweeps.inward::<CAUSES>(own.start..own.end, beyond, swept, states, changes, &mut []);
         sweeps.outward::<CAUSES>(own.clone(), units, swept, states, changes);
     }
 
@@ -264,7 +264,7 @@ pub fn residual_derivatives<C: Columns>(
     }
     let slopes = Slopes::<C>::new(links, factors, rows, &mut []);
     let (of_q, of_v) = derivatives.split_at_mut(derivatives.len() / 2);
-    for (place, added) in slopes.diagonals() {
+    for (place, added) in (0..5 * links.len()).filter_map(|k| slopes.diagonal(k)) {
         if let Some(entry) = of_q.get_mut(place) {
             *entry = combine::<C, 2>([entry, added], |[entry, added]| entry + -added);
         }
@@ -296,7 +296,7 @@ pub fn forward_dynamics_derivatives<C: Columns>(
                 piece.add_force::<C>(n, place, force, swept);
             }
         }
-        for (place, added) in slopes.diagonals() {
+        for (place, added) in (0..5 * n).filter_map(|k| slopes.diagonal(k)) {
             piece.add_force::<C>(n, place, &combine::<C, 1>([added], |[added]| -added), swept);
         }
         piece.write::<C>(n, &[1, 2, 0], swept, derivatives);

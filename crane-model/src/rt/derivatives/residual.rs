@@ -228,13 +228,13 @@ impl<'a, C: Columns> Slopes<'a, C> {
         }
     }
 
-    /// What a rotation vector, whose axes depend on its coordinates, adds to ∂r/∂q: places in the matrix, and numbers that are not zero.
+    /// What a rotation vector, whose axes depend on its coordinates, adds to ∂r/∂q, on five diagonals: a place in the matrix and a number, if
+    /// it is not zero.
     #[inline(always)]
-    pub(super) fn diagonals(&self) -> impl Iterator<Item = (usize, &C::Number)> {
+    pub(super) fn diagonal(&self, k: usize) -> Option<(usize, &C::Number)> {
         let n = self.links.len();
-        let numbers = self.factors.get(rows::DIAGONALS * n..).unwrap_or_default().iter().enumerate();
-        let others = numbers.filter(|(_, added)| !added.is_zero());
-        others.filter_map(move |(k, added)| Some(((k % n * n + k % n + k / n).checked_sub(2)?, added)))
+        let added = self.factors.get(rows::DIAGONALS * n + k)?;
+        if added.is_zero() { None } else { Some(((k % n * n + k % n + k / n).checked_sub(2)?, added)) }
     }
 }
 

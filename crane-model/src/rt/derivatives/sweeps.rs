@@ -194,7 +194,8 @@ impl<'a, C: Columns> Sweeps<'a, C> {
     }
 
     /// From the last of some coordinates to the first: `g/D` in place of r, and what accelerations and rates beyond each coordinate cause, if
-    /// there are `changes`. `units`: those in which r of what is beyond a coordinate is not zero; `arrive` sees the wrench that arrives there.
+    /// there are `changes`. `units`: those in which r of what is beyond a coordinate is not zero; changes that are `giving` way see the
+    /// wrench that arrives there.
     #[inline(always)]
     pub(super) fn inward<const CAUSES: bool>(
         &self,
@@ -203,7 +204,7 @@ impl<'a, C: Columns> Sweeps<'a, C> {
         swept: &mut [Entry<C>],
         States { now, reached }: &mut States<'_, C>,
         changes: &[Changes<C>],
-        mut arrive: impl FnMut(usize, &[Carried<C>]),
+        giving: &mut [Changes<C>],
     ) {
         let (stride, none) = (now.len(), Changes::zero());
         for j in coordinates.clone().filter(|j| self.joints.get(*j).is_some_and(|joint| joint.carries)) {
@@ -216,7 +217,9 @@ impl<'a, C: Columns> Sweeps<'a, C> {
             if joint.carries {
                 add::<C>(wrench, part(reached, stride, j, &units));
             }
-            arrive(j, wrench);
+            if let (false, Some(change)) = (CAUSES, giving.get_mut(j)) {
+                change.give_way(wrench);
+            }
             let (change, row) = (changes.get(j).unwrap_or(&none), part(swept, stride, j, &units));
             formed!(joint.inward::<CAUSES>(link.rotates)(change, wrench, row));
             if !link.continues(j) {
