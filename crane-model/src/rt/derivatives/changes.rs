@@ -6,16 +6,11 @@
 //! of the wrench with the acceleration that a unit force at k causes at j; for k beyond j also that of the acceleration and the rates with the wrench
 //! and the answers that this force brings to j. The sweeps for A⁻¹ know both.
 
-#![expect(clippy::inline_always, reason = "inlined where wider vectors are known, loops use them")]
-
-use super::columns::{Columns, Constant};
-use super::residual::{own, spread};
-use super::sweeps::{Carried, Entry, States, Sweeps, mass};
+use super::columns::{Carried, Columns, Constant};
 use super::vectors::{cross_subtract, three};
-use super::{Link, Own, combine};
 use crate::rt::fused::fma;
 
-/// Columns that [`give_way`] sweeps: linear and angular accelerations, and angular rates.
+/// Columns of what arrives where changes give way: linear and angular accelerations, and angular rates.
 pub const COLUMNS: usize = 9;
 
 /// Moment and force, angular and linear acceleration, and twice the angular rates, of a change of one coordinate and of its rate. Once what is
@@ -24,7 +19,7 @@ pub const COLUMNS: usize = 9;
 pub struct Changes<C: Columns> {
     pub(super) of: [[C::Number; 15]; 2],
     /// The coordinate's point.
-    point: [C::Number; 3],
+    pub(super) point: [C::Number; 3],
 }
 
 impl<C: Columns> Changes<C> {
@@ -102,39 +97,6 @@ impl<C: Columns> Changes<C> {
             }
             for place in 0..15 {
                 of[place] = C::number(&units[place]);
-            }
-        }
-    }
-}
-
-/// Gives the changes and the coordinates what follows from the way in which everything beyond gives way. `rows`: those of the derivatives of the residual.
-#[inline(always)]
-pub(super) fn give_way<C: Columns>(
-    sweeps: &mut Sweeps<'_, C>,
-    rows: &[Own<C>],
-    changes: &mut [Changes<C>],
-    swept: &mut [Entry<C>],
-    states: &mut States<'_, C>,
-) {
-    let n = sweeps.links.len();
-    for (j, Link { before, .. }) in sweeps.links.iter().enumerate() {
-        let from = before.and_then(|before| changes.get(before)).map_or([C::Number::constant(0.0); 3], |one| one.point);
-        if let (Some(change), Some(joint)) = (changes.get_mut(j), sweeps.joints.get(j)) {
-            change.point = three!(|k| combine::<C, 2>([&from[k], &joint.own[mass::OFFSET + k]], |[a, b]| a + b));
-        }
-    }
-    let (stride, units) = (swept.len() / n.max(1), COLUMNS.div_ceil(C::WIDTH));
-    for (row, own) in swept.chunks_exact_mut(stride.max(1)).zip(rows) {
-        for unit in 0..row.len().min(COLUMNS.div_ceil(C::WIDTH)) {
-            row[unit][0] = C::load(&own[own::LINEAR_MOMENTUM + unit * C::WIDTH..own::LINEAR_MOMENTUM + COLUMNS]);
-        }
-    }
-    sweeps.inward::<false>(0..n, |_| 0..units, swept, states, &[], changes);
-    for (joint, row) in sweeps.joints.iter_mut().zip(swept.chunks_exact(stride.max(1))) {
-        for k in 0..3 {
-            let column = COLUMNS - 3 + k;
-            if let Some([answers, ..]) = row.get(column / C::WIDTH) {
-                joint.own[mass::ANSWER + k] = spread::<C>(answers)[column % C::WIDTH];
             }
         }
     }

@@ -49,6 +49,9 @@ pub trait Columns: Copy {
     fn store(unit: &Self::Unit, row: &mut [Self::Number]);
 }
 
+/// Moment, force and answers to angular rates; or angular and linear acceleration: x, y and z of each, in the lanes of a unit.
+pub type Carried<C> = [<C as Columns>::Unit; 9];
+
 /// A number for each lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]

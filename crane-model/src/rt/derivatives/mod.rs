@@ -29,6 +29,7 @@
 
 mod changes;
 mod columns;
+mod give_way;
 mod residual;
 mod sweeps;
 mod vectors;
@@ -38,10 +39,11 @@ use core::ops::Range;
 use crate::rt::fused::fma;
 use changes::COLUMNS as OF_CHANGES;
 pub use changes::Changes;
-pub use columns::{Columns, Constant, EightColumns, EightStates, One};
+pub use columns::{Carried, Columns, Constant, EightColumns, EightStates, One};
+use give_way::give_way;
 use residual::{Slopes, mark_paths};
 use sweeps::{COLUMNS, Sweeps, part};
-pub use sweeps::{Carried, Entry, Joint, States};
+pub use sweeps::{Entry, Joint, States};
 
 /// What the sweeps must know of a coordinate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -288,7 +290,7 @@ pub fn forward_dynamics_derivatives<C: Columns>(
     let n = links.len();
     let slopes = Slopes::<C>::new(links, of_residual, rows, changes);
     let mut sweeps = Sweeps::<C>::new(links, of_mass, joints);
-    changes::give_way(&mut sweeps, slopes.rows, changes, swept, &mut states);
+    give_way(&mut sweeps, slopes.rows, changes, swept, &mut states);
     for piece in Piece::all::<C>(links, states.now.len()) {
         piece.sweep::<true, C>(&sweeps, swept, &mut states, changes);
         for place in places.clone() {

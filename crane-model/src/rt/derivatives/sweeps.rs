@@ -5,7 +5,7 @@
 use core::ops::Range;
 
 use super::changes::Changes;
-use super::columns::{Columns, Constant};
+use super::columns::{Carried, Columns, Constant};
 use super::vectors::{cross_add, cross_subtract, dot, dot_add, scaled_add, three};
 use super::{Link, Own};
 
@@ -14,9 +14,6 @@ pub const COLUMNS: usize = 48;
 
 /// Of a coordinate, in the lanes of a unit: A⁻¹, and entries of ∂q̈/∂q and ∂q̈/∂v.
 pub type Entry<C> = [<C as Columns>::Unit; 3];
-/// Moment, force and answers to angular rates; or angular and linear acceleration: x, y and z of each, in the lanes of a unit.
-pub type Carried<C> = [<C as Columns>::Unit; 9];
-
 /// Storage for the sweeps.
 pub struct States<'a, C: Columns> {
     /// Where a sweep is: an entry for each unit of a row.
