@@ -1,6 +1,6 @@
 //! Forces whose law depends on one strain: `f = −Jᵀ F(s, ṡ)`.
 //!
-//! Where a [compliance c](super::pads::Series) that depends on a coordinate q_k is in series, `∂E/∂c = −½ F²` with the force F at rest: on q_k acts
+//! Where a [compliance c](super::pads::Series) that depends on a coordinate k is in series, `∂E/∂c = −½ F²` with the force F at rest: on k acts
 //! `½ F² ∂c/∂q_k`, too, and the stiffness is `∂F/∂s J̃ᵀ J̃ + F ∂²s/∂q∂q − ½ F² ∂²c/∂q∂q` with `J̃ = J − F ∂c/∂q`.
 
 use std::borrow::Cow;
