@@ -67,13 +67,16 @@ fn derivatives_are_those_of_dual_numbers() {
                 assert!(off <= 1e-9 * size, "{name}, q̈, rates {of_rates}: off by {off:e} of {size:e}");
             }
             let mass = crane.matrix("mass_matrix", &state);
+            let principal = mass.clone().symmetric_eigenvalues();
+            let condition = principal.max() / principal.min();
             let inverse = DMatrix::from_row_slice(n, n, &of_motion[2 * n * n..]);
             for j in (0..n).filter(|j| !crane.prescribed().contains(j)) {
                 let unit = DVector::from_fn(n, |i, _| if i == j { 1.0 } else { 0.0 });
                 let (unknowns, right) = crane.unknowns(mass.clone(), unit);
                 let product = unknowns * inverse.column(j);
-                // A⁻¹ without what is prescribed, to rounding times the condition of A.
-                assert!((product - right).amax() <= 1e-9, "{name}, A⁻¹, column {j}");
+                // A⁻¹ without what is prescribed, to a few roundings times the condition of A, of up to 6e7.
+                let off = (product - right).amax();
+                assert!(off <= 4.0 * f64::EPSILON * condition, "{name}, A⁻¹, column {j}: off by {off:e}");
             }
         }
     }
