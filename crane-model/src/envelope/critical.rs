@@ -17,6 +17,8 @@ const ACCURACY: f64 = 1e-8;
 const A_LITTLE: f64 = 1e-6;
 /// Powers of two by which the mass of the crane is multiplied to find a load with which it stands, if it does not stand without one.
 const SEARCHED: std::ops::RangeInclusive<i32> = -8..=3;
+/// How many times the way to the least load is halved: to 1e-6 of the first with which the crane stands.
+const HALVINGS: u32 = 20;
 
 /// What a load may do to a crane on feet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +36,8 @@ pub struct CriticalLoad {
     pub load: f64,
     /// The foot that lifts, or the feet about which the crane tips.
     pub location: String,
+    /// The least load with which it stands, if it does not stand without one.
+    pub at_least: Option<f64>,
 }
 
 /// Why there is no critical load.
@@ -109,11 +113,20 @@ pub fn critical_load(
     let mut posed = Posed { crane, load: parameter, positions: &positions };
     let multiples = SEARCHED.map(|power| mass * 2.0_f64.powi(power));
     let loads = [least].into_iter().chain(multiples).chain([spec_load]).filter(|load| *load <= greatest);
-    let trials = loads.filter_map(|load| {
+    let mut stands = |load: f64| {
         let at = posed.find(load, None)?;
-        Some(posed.trial(load, at, &search))
+        Some(posed.trial(load, at, &search)).filter(Trial::is_within)
+    };
+    let loads: Vec<f64> = loads.collect();
+    let first = loads.iter().find_map(|load| stands(*load)).ok_or(NoCriticalLoad::Never { critical })?;
+    let at_least = (first.load > least).then(|| {
+        let [mut falls, mut holds] = [least, first.load];
+        for _ in 0..HALVINGS {
+            let half = 0.5 * (falls + holds);
+            if stands(half).is_some() { holds = half } else { falls = half }
+        }
+        holds
     });
-    let first = trials.into_iter().find(Trial::is_within).ok_or(NoCriticalLoad::Never { critical })?;
     let (best, governing) = posed.find_largest(first, &search);
     let load = best.ok_or(NoCriticalLoad::Never { critical })?.load;
     match governing {
@@ -122,12 +135,12 @@ pub fn critical_load(
             let status = status_beyond(&mut posed, load);
             match status {
                 Status::TipsOver { feet } if critical == Critical::Tipping => {
-                    Ok(CriticalLoad { load, location: feet.join(" – ") })
+                    Ok(CriticalLoad { load, location: feet.join(" – "), at_least })
                 }
                 status => Err(NoCriticalLoad::Otherwise { load, status }),
             }
         }
-        Some(limit) => Ok(CriticalLoad { load, location: limit.location(crane) }),
+        Some(limit) => Ok(CriticalLoad { load, location: limit.location(crane), at_least }),
     }
 }
 

@@ -113,7 +113,12 @@ pub fn critical(report: &mut Report, crane: &mut dyn DynCrane, index: usize) -> 
         let found = critical_load(crane, index, kind);
         crane.set_parameter(index, before).map_err(|refused| Problem::failed(refused.to_string(), ""))?;
         let value = match found {
-            Ok(CriticalLoad { load, location: at }) => {
+            Ok(CriticalLoad { load, location: at, at_least }) => {
+                let fails = match kind {
+                    Critical::FirstFoot => "a foot carries nothing",
+                    Critical::Tipping => "the crane does not stand",
+                };
+                report.caution(at_least.map(|least| format!("{fails} with a {name} of less than {least:.1} {unit}")));
                 report.line(format!("{name} that {what}"), load, &unit);
                 report.line(location, at.as_str(), "");
                 json!({"load": load, "at": at})

@@ -137,7 +137,7 @@ fn the_load_that_tips_is_never_left_out() {
                     all.push(critical_load(crane, 0, Critical::Tipping));
                 }
                 assert!(all.iter().all(|found| *found == all[0]), "{all:?}");
-                let CriticalLoad { load, location: line } = all.remove(0).expect("a load");
+                let CriticalLoad { load, location: line, .. } = all.remove(0).expect("a load");
                 for (share, expected) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
                     let found = stands(crane, 0.9 * load, share * load);
                     assert_eq!(found, expected, "{drive}, {stiffness:e} N/m, {slew}°: {share} of {load}");
@@ -275,4 +275,30 @@ fn a_crane_on_two_feet_and_a_rope_has_tipped() {
         let words = cautions::of_pose(crane, &found.q, cautions::BEND).join("\n");
         assert!(words.contains("tips over the line fr – fl: no other foot carries anything"), "{payload}: {words}");
     }
+}
+
+/// A counterweight of 3 t, 1 m behind the rear feet, a truck of 2 t above the middle between them and the front feet, 2 m apart, and a load 4 m before the
+/// middle: with less than (3 − 2) t · 1 m/5 m it tips backwards, with more than (3 · 3 + 2) t m/3 m forwards.
+#[test]
+fn a_counterweight_asks_for_a_load() {
+    let text = "format: 1\nname: counterweight\nparameters: {load: {value: 500, unit: kg}}\nlinks:\n\
+        - {name: truck, joint: free, mass: 2000, com: [0, 0, 0.8], inertia: {gyration: [1, 1, 1]}}\n\
+        - {name: column, placement: {transform: {translation: [0, 0, 1]}}, mass: 3000, com: [-2, 0, 0], inertia: {gyration: [0.4, 0.4, 0.4]}}\n\
+        - {name: load, on: truck, placement: {transform: {translation: [4, 0, 1]}}, joint: revolute, mass: load, com: [0, 0, 0], inertia: {gyration: [0.1, 0.1, 0.1]}}\n\
+        supports:\n\
+        - {name: front_left, one_sided: true, at: [1, 1, 0], stiffness: [1e9, 1e9, 1e9]}\n\
+        - {name: front_right, one_sided: true, at: [1, -1, 0], stiffness: [1e9, 1e9, 1e9]}\n\
+        - {name: rear_left, one_sided: true, at: [-1, 1, 0], stiffness: [1e9, 1e9, 1e9]}\n\
+        - {name: rear_right, one_sided: true, at: [-1, -1, 0], stiffness: [1e9, 1e9, 1e9]}\n\
+        drives: [{coordinate: load_psi, stiffness: 1e6, motion: {hold: 0}}]\n";
+    let mut crane = crane(text);
+    for critical in [Critical::Tipping, Critical::FirstFoot] {
+        let CriticalLoad { load, at_least, .. } = critical_load(&mut crane, 0, critical).expect("a load");
+        let least = at_least.expect("a least load");
+        // Feet of 1e9 N/m give way by 5e-5 m at levers of 1 m; the search ends at 1e-6 of the first load that holds.
+        assert!((least / 200.0 - 1.0).abs() < 1e-3, "{critical:?}: at least {least} kg");
+        assert!((load / (11_000.0 / 3.0) - 1.0).abs() < 1e-3, "{critical:?}: at most {load} kg");
+    }
+    let mut truck = truck(FOUR, 1e7, 30.0, "stiffness: 1e7");
+    assert_eq!(critical_load(&mut truck, 0, Critical::Tipping).expect("a load").at_least, None);
 }
