@@ -45,7 +45,7 @@ impl Condition {
     /// The condition at pose `q`, in which drives that hold these positions keep the crane at rest.
     pub fn at(crane: &dyn DynCrane, q: Vec<f64>, positions: &[f64]) -> Self {
         let rest = vec![0.0; q.len()];
-        let wrenches = crane.internal_forces_at_rest(0.0, &q);
+        let wrenches = crane.internal_forces_at(0.0, &q, &rest, &rest);
         let efforts = crane.drive_efforts_holding(0.0, positions, &q);
         let reactions = crane.support_reactions_at(&q, &rest).into_iter().zip(crane.support_gaps_at(&q));
         Self {

@@ -37,8 +37,8 @@ pub fn second_order(crane: &mut dyn DynCrane, parameter: usize) -> Option<Second
     let mut posed = Posed { crane, load: parameter, positions: &positions };
     let whole = posed.find(1.0, None)?;
     let loaded = |posed: &Posed<'_>, q: &[f64]| {
-        let crane = &*posed.crane;
-        let wrenches = crane.internal_forces_at_rest(0.0, q);
+        let (crane, rest) = (&*posed.crane, vec![0.0; q.len()]);
+        let wrenches = crane.internal_forces_at(0.0, q, &rest, &rest);
         let mut places = places(crane.description(), &crane.section_places_at(q), &wrenches);
         places.sort_by_key(|place| place.section);
         Loaded { points: crane.points_at(q), places }

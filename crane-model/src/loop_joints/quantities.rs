@@ -105,20 +105,10 @@ impl dyn DynCrane + '_ {
     /// the force that the accelerations require, without friction of bristles, whose states are not known here; loop joints transmit what
     /// the accelerations require.
     pub fn internal_forces_at(&self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Vec<Wrench> {
-        self.internal_forces_closed(t, [q, v, a], &self.loop_forces_required(t, [q, v, a]))
-    }
-
-    /// The same at rest, with the drives, loads and winches as at time `t`; their motions stand.
-    pub fn internal_forces_at_rest(&self, t: f64, q: &[f64]) -> Vec<Wrench> {
-        let rest = vec![0.0; q.len()];
-        let multipliers = self.loop_forces_holding(t, &self.drive_targets_at(t), q);
-        self.internal_forces_closed(t, [q, &rest, &rest], &multipliers)
-    }
-
-    fn internal_forces_closed(&self, t: f64, [q, v, a]: [&[f64]; 3], multipliers: &[f64]) -> Vec<Wrench> {
+        let multipliers = self.loop_forces_required(t, [q, v, a]);
         let pushes =
-            if self.description().has_valves() { self.pushes_required(t, [q, v, a], multipliers) } else { Vec::new() };
-        self.internal_forces_with(t, [q, v, a], &pushes, multipliers)
+            if self.description().has_valves() { self.pushes_required(t, [q, v, a], &multipliers) } else { Vec::new() };
+        self.internal_forces_with(t, [q, v, a], &pushes, &multipliers)
     }
 
     /// What the equations of the loop joints transmit so that the crane has given accelerations; empty without loops.

@@ -36,7 +36,7 @@ impl Instant {
             t,
             lines: lines(crane, t, q, &rest, &rest),
             x: crane.section_places_at(q),
-            wrenches: crane.internal_forces_at_rest(t, q),
+            wrenches: crane.internal_forces_at(t, q, &rest, &rest),
         }
     }
 

@@ -41,7 +41,7 @@ impl Strength {
     pub fn new(source: &mut Source<'_>, rest: &Rest, notes: &mut Vec<String>) -> Option<Self> {
         let crane: &dyn DynCrane = source.crane;
         let (description, still) = (crane.description(), vec![0.0; rest.q.len()]);
-        let wrenches = crane.internal_forces_at_rest(0.0, &rest.q);
+        let wrenches = crane.internal_forces_at(0.0, &rest.q, &still, &still);
         let own = wrenches_at(source, &constants(&rest.q), &constants(&rest.multipliers));
         if !are_close(&own, &wrenches) {
             notes.push(

@@ -6,6 +6,7 @@ use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::Method;
 use crane_model::modes;
 use crane_model::nalgebra::Vector3;
+use crane_model::results::Instant;
 
 use super::sliding_beams::{LENGTH, LOAD, OVERLAP, Telescope, assert_section_forces, closed_form, rest, run};
 
@@ -196,4 +197,25 @@ fn a_beam_that_extends_under_load_keeps_its_energy() {
     let difference = (0..3).map(|i| (bdf[i] - rk4[i]).abs()).fold(0.0, f64::max);
     assert!(difference < 1e-6, "{bdf:?}, {rk4:?}");
     assert!(off < 1e-4 * work && off_rk4 < 1e-4 * work, "{off}, {off_rk4} of {work} J");
+}
+
+/// What a pose at rest transmits follows from it, wherever the drives of the spec would hold the crane: tables of poses and charts hold them elsewhere.
+#[test]
+fn sections_at_rest_do_not_ask_where_motions_are() {
+    let held = |extension: f64| Telescope { motion: format!("{{hold: {extension}}}"), ..exact("4") }.crane();
+    let [here, there] = [0.7, 0.0].map(held);
+    let [here, there]: [&dyn DynCrane; 2] = [&here, &there];
+    let q = rest(here);
+    let [expected, found] = [here, there].map(|crane| Instant::at_rest(crane, &q));
+    let numbers = |instant: &Instant| -> Vec<f64> {
+        let (_, wrenches) = instant.state();
+        wrenches
+            .iter()
+            .flat_map(|wrench| wrench.force.iter().chain(&wrench.moment).copied().collect::<Vec<_>>())
+            .collect()
+    };
+    for (expected, found) in numbers(&expected).into_iter().zip(numbers(&found)) {
+        // Statics ends at 1e-10 of moments of 100 N times 7 m.
+        assert!((expected - found).abs() < 1e-6 * LOAD, "{found} instead of {expected}");
+    }
 }
