@@ -9,7 +9,7 @@ use crate::emit::{GeneratedCode, emit};
 use crate::emit_c::{CCode, Precision, emit_c, variables};
 use crate::lower::{LoweredProgram, lower};
 use crate::mechanics::{derive, derive_verbatim, left_out};
-use crate::program::{Function, FunctionId, Product, RuntimeTrait, Shape, has_products};
+use crate::program::{Function, FunctionId, Part, Product, Shape, has_products};
 use crate::read::read;
 use crate::report::Report;
 use crate::validate::{self, Checked};
@@ -80,7 +80,7 @@ pub fn generate_c(
         modes: is_chosen(FunctionId::Linearise),
         internal_forces: true,
         derivatives: is_chosen(FunctionId::TransformDerivatives),
-        motion_derivatives: RuntimeTrait::MotionDerivatives.functions().any(is_chosen),
+        motion_derivatives: Part::MotionDerivatives.functions().any(is_chosen),
         ensemble: false,
     };
     // Straight-line code needs no tables of numbers and no loops over columns.

@@ -1,9 +1,9 @@
-//! Runtime for cranes compiled by `crane-codegen`: statics, motion and small vibrations of types that implement the traits of a generated
+//! Runtime for cranes compiled by `crane-codegen`: statics, motion and small vibrations of types that implement the trait of a generated
 //! crane.
 //!
 //! | what | where | needs |
 //! |---|---|---|
-//! | traits of a generated crane | [`CraneModel`], [`Dynamics`], [`Implicit`], [`Ensemble`], [`Statics`], [`Linearise`], [`InternalForces`], [`TransformDerivatives`], [`MotionDerivatives`] | nothing |
+//! | what a generated crane implements | [`CraneModel`] | nothing |
 //! | one step in time | [`dynamics::rk4`] | nothing |
 //! | adaptive steps, explicit and implicit | `dynamics::dormand_prince`, `dynamics::rosenbrock` | `std` |
 //! | equilibrium | `statics::Problem` | `std` |
@@ -87,15 +87,12 @@ pub use crane_quantities::{
     AttachmentInfo, BodyInfo, Bound, BristleInfo, ColumnKind, ConditionInfo, ConnectorInfo, CoordinateInfo,
     CoordinateKind, CoordinateRole, Count, Cut, CylinderInfo, Description, DisplayUnit, DriveInfo, EventInfo,
     InputInfo, JoinsInfo, LARGE_TILT, List, LoadInfo, LoopEquationInfo, LoopJointInfo, Moment, NEAR_SINGULAR,
-    ParameterError, ParameterInfo, PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, TIPPED, Text,
+    ParameterError, ParameterInfo, Part, PumpInfo, Refusal, SectionInfo, Side, StageInfo, SupportInfo, TIPPED, Text,
     ValveInfo,
 };
 pub use links::fill_links;
 pub use methods::Entry;
-pub use model::{
-    CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
-    MotionDerivatives, OneByOne, Statics, TransformDerivatives,
-};
+pub use model::{CraneModel, LaneDynamics, Linearisation, OneByOne};
 /// The linear algebra of every signature, so that generated code needs only this crate.
 pub use nalgebra;
 pub use stress::SectionModuli;

@@ -1,5 +1,6 @@
-//! Methods of the traits of a crane, from the table of quantities.
+//! Methods of a crane, from the table of quantities.
 
+use crane_quantities::Part;
 use nalgebra::{Matrix4, Vector3};
 
 use crate::{SectionModuli, Tension, Wrench};
@@ -8,8 +9,6 @@ use crate::{SectionModuli, Tension, Wrench};
 pub trait Entry: Copy {
     /// How many numbers it has.
     const LEN: usize;
-    /// The entry whose numbers are 0.
-    const ZERO: Self;
     /// The entry of these numbers, as functions write them: a matrix column by column.
     ///
     /// # Panics
@@ -17,11 +16,19 @@ pub trait Entry: Copy {
     fn from_numbers(numbers: &[f64]) -> Self;
     /// Its numbers, in the same order.
     fn numbers(&self) -> impl Iterator<Item = f64>;
+    /// The entry whose numbers are all the same.
+    fn repeat(number: f64) -> Self {
+        Self::from_numbers(&[number; 16][..Self::LEN.min(16)])
+    }
+}
+
+/// What a function returns that a crane of these parts does not have: 0 where it lacks such a component, NaN if its parts do not contain it.
+pub const fn absent(part: Part, parts: &[Part]) -> f64 {
+    if part.is_in(parts) { 0.0 } else { f64::NAN }
 }
 
 impl Entry for f64 {
     const LEN: usize = 1;
-    const ZERO: Self = 0.0;
     #[inline]
     fn from_numbers(numbers: &[f64]) -> Self {
         numbers[0]
@@ -33,7 +40,9 @@ impl Entry for f64 {
 
 impl<const N: usize> Entry for [f64; N] {
     const LEN: usize = N;
-    const ZERO: Self = [0.0; N];
+    fn repeat(number: f64) -> Self {
+        [number; N]
+    }
     fn from_numbers(numbers: &[f64]) -> Self {
         core::array::from_fn(|index| numbers[index])
     }
@@ -44,7 +53,6 @@ impl<const N: usize> Entry for [f64; N] {
 
 impl Entry for Vector3<f64> {
     const LEN: usize = 3;
-    const ZERO: Self = Vector3::new(0.0, 0.0, 0.0);
     fn from_numbers(numbers: &[f64]) -> Self {
         Vector3::new(numbers[0], numbers[1], numbers[2])
     }
@@ -55,7 +63,6 @@ impl Entry for Vector3<f64> {
 
 impl Entry for Matrix4<f64> {
     const LEN: usize = 16;
-    const ZERO: Self = Matrix4::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     fn from_numbers(numbers: &[f64]) -> Self {
         Matrix4::from_column_slice(&numbers[..16])
     }
@@ -66,7 +73,6 @@ impl Entry for Matrix4<f64> {
 
 impl Entry for Tension {
     const LEN: usize = 3;
-    const ZERO: Self = Tension::ZERO;
     fn from_numbers(numbers: &[f64]) -> Self {
         Tension { force: numbers[0], stiffness: numbers[1], damping: numbers[2] }
     }
@@ -77,7 +83,6 @@ impl Entry for Tension {
 
 impl Entry for Wrench {
     const LEN: usize = 6;
-    const ZERO: Self = Wrench::ZERO;
     fn from_numbers(numbers: &[f64]) -> Self {
         Wrench { force: Vector3::from_numbers(numbers), moment: Vector3::from_numbers(&numbers[3..]) }
     }
@@ -88,7 +93,6 @@ impl Entry for Wrench {
 
 impl Entry for SectionModuli {
     const LEN: usize = 8;
-    const ZERO: Self = SectionModuli::ZERO;
     fn from_numbers(numbers: &[f64]) -> Self {
         let [area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress] =
             <[f64; 8]>::from_numbers(numbers);
@@ -100,20 +104,20 @@ impl Entry for SectionModuli {
     }
 }
 
-/// Type of an argument of the traits with the number of coordinates `N` in their types.
+/// Type of an argument of the trait with the number of coordinates `N` in its type.
 macro_rules! sized_argument {
     (t) => { f64 };
     ($vector:ident) => { &SVector<f64, N> };
 }
 
-/// Type of a result of those traits.
+/// Type of a result of that trait.
 macro_rules! sized_result {
     (number) => { f64 };
     (vector) => { SVector<f64, N> };
     (base) => { SMatrix<f64, 6, 6> };
 }
 
-/// Type of an entry of a list of those traits.
+/// Type of an entry of a list of that trait.
 macro_rules! sized_entry {
     (row) => {
         [f64; N]
@@ -123,61 +127,64 @@ macro_rules! sized_entry {
     };
 }
 
-/// A method of those traits.
+/// A method of that trait. `Absent` is what a crane without the function returns: 0 if it lacks such a component, NaN if its parts do not contain the function.
 macro_rules! sized_method {
-    ($rule:ident other $($row:tt)*) => {};
-    (written $result:tt $($row:tt)*) => {};
-    (required [$item:ident; $count:ident] [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+    ($part:ident $rule:ident other $($row:tt)*) => {};
+    ($part:ident written $result:tt $($row:tt)*) => {};
+    (Common required [$item:ident; $count:ident] [$($about:tt)*] $name:ident($($argument:ident),*)) => {
         $($about)*
         #[doc = concat!("\n`out`: one ", stringify!($item), " for each of the crane's ", stringify!($count), ".")]
         fn $name(&self, $($argument: sized_argument!($argument),)* out: &mut [sized_entry!($item)]);
     };
-    (zero [$item:ident; $count:ident] [$($about:tt)*] $name:ident($($argument:ident),*)) => {
-        $($about)*
-        #[doc = concat!("\n`out`: one ", stringify!($item), " for each of the crane's ", stringify!($count), ".")]
-        #[allow(unused_variables, reason = "a crane without such a part needs no arguments")]
-        fn $name(&self, $($argument: sized_argument!($argument),)* out: &mut [sized_entry!($item)]) {
-            out.fill(Entry::ZERO);
-        }
-    };
-    (required matrix [$($about:tt)*] $name:ident($($argument:ident),*)) => {
-        $($about)*
-        #[doc = "\n`out`: the whole matrix, whatever it was before."]
-        fn $name(&self, $($argument: sized_argument!($argument),)* out: &mut SMatrix<f64, N, N>);
-    };
-    (required $result:ident [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+    (Common required $result:ident [$($about:tt)*] $name:ident($($argument:ident),*)) => {
         $($about)*
         fn $name(&self, $($argument: sized_argument!($argument)),*) -> sized_result!($result);
     };
-    (zero number [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+    ($part:ident $rule:ident [$item:ident; $count:ident] [$($about:tt)*] $name:ident($($argument:ident),*)) => {
         $($about)*
-        #[allow(unused_variables, reason = "a crane without such a part needs no arguments")]
-        fn $name(&self, $($argument: sized_argument!($argument)),*) -> f64 {
-            0.0
+        #[doc = concat!("\n`out`: one ", stringify!($item), " for each of the crane's ", stringify!($count), ".")]
+        #[allow(unused_variables, reason = "a crane without the function needs no arguments")]
+        fn $name(&self, $($argument: sized_argument!($argument),)* out: &mut [sized_entry!($item)]) {
+            out.fill(Entry::repeat(const { absent(Part::$part, Self::PARTS) }));
         }
     };
-    (zero $result:ident [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+    ($part:ident $rule:ident matrix [$($about:tt)*] $name:ident($($argument:ident),*)) => {
         $($about)*
-        #[allow(unused_variables, reason = "a crane without such a part needs no arguments")]
+        #[doc = "\n`out`: the whole matrix, whatever it was before."]
+        #[allow(unused_variables, reason = "a crane without the function needs no arguments")]
+        fn $name(&self, $($argument: sized_argument!($argument),)* out: &mut SMatrix<f64, N, N>) {
+            out.fill(const { absent(Part::$part, Self::PARTS) });
+        }
+    };
+    ($part:ident $rule:ident number [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+        $($about)*
+        #[allow(unused_variables, reason = "a crane without the function needs no arguments")]
+        fn $name(&self, $($argument: sized_argument!($argument)),*) -> f64 {
+            const { absent(Part::$part, Self::PARTS) }
+        }
+    };
+    ($part:ident $rule:ident $result:ident [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+        $($about)*
+        #[allow(unused_variables, reason = "a crane without the function needs no arguments")]
         fn $name(&self, $($argument: sized_argument!($argument)),*) -> sized_result!($result) {
-            nalgebra::zero()
+            <sized_result!($result)>::repeat(const { absent(Part::$part, Self::PARTS) })
         }
     };
 }
 
-/// The methods of a trait with the number of coordinates in its type.
+/// The methods of that trait.
 macro_rules! sized_methods {
-    ($(
+    ($($part:ident { $(
         $(#[doc = $remark:literal])*
         $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
         $(python($($python:tt)*))?;
-    )*) => {
-        $(sized_method! {
-            $rule $result [
+    )* })*) => {
+        $($(sized_method! {
+            $part $rule $result [
                 #[allow(clippy::doc_markdown, reason = "names of symbols, as in generated code")]
                 #[doc = $doc] #[doc = concat!("\n`", $equation, "`\n")] $(#[doc = $remark])*]
             $name($($argument),*)
-        })*
+        })*)*
     };
 }
 
@@ -197,7 +204,7 @@ macro_rules! entry_type {
     (row) => { f64 };
 }
 
-/// Type of an argument of the traits on slices.
+/// Type of an argument of the trait on slices.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! slice_argument {

@@ -1,22 +1,37 @@
 //! The interface between generated cranes and everything that is computed with them.
 //!
-//! Generated code implements these traits; statics, integrators and reports are generic over them. Parts that a crane does not
-//! have (supports, flexible links, drives, damping) keep the default: zero, at no cost.
-//!
 //! Throughout: `N` coordinates, `q` in m and rad, `v = q̇` in m/s and rad/s, `t` in s, world frame with z up.
 
-use crane_quantities::{Count, quantities};
+use crane_quantities::{Count, Part, quantities};
 use nalgebra::{Cholesky, Const, DefaultAllocator, Dim, OMatrix, SMatrix, SVector, allocator::Allocator};
 
 use crate::{
     Description, LoopJointInfo, ParameterError, StageInfo, fill_links,
-    methods::{Entry, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
+    methods::{Entry, absent, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
     rt::derivatives::{self, Changes, Columns, EightColumns, Joint, Link, States, Workspace, units},
     rt::lanes::f64x8,
 };
 
-/// Poses, forces and potential energy of a crane.
-pub trait CraneModel<const N: usize>: Send + Sync {
+/// A crane with `N` coordinates: what generated code implements, and models written by hand.
+///
+/// Equations of motion `A(q) q̈ = e(q, q̇) + f(t, q, q̇)`, Eq. (23). A spec's `analyses` choose the [parts](Self::PARTS) that a crane has. Functions of parts that it
+/// does not have are NaN; solvers of them do not compile. Functions of components that it lacks, such as supports, are zero.
+///
+/// All springs and dampers except connectors act on single coordinates, or in the block of the base's coordinates, which are the first of
+/// q. The coefficients of linear springs and dampers on single coordinates are constants; those of other laws are evaluated at each step.
+///
+/// Each body has derivatives of its transform with respect to the coordinates that move it, the first
+/// [`degrees_of_freedom`](crate::BodyInfo::degrees_of_freedom) of `q`; all others are zero and not stored.
+pub trait CraneModel<const N: usize>: Clone + Send + Sync + 'static {
+    /// The parts of the table of quantities that it has.
+    const PARTS: &'static [Part];
+
+    /// The factors that [`factorise`](Self::factorise) computes for [`solve`](Self::solve).
+    type Factors: Send;
+
+    /// Eight cranes.
+    type Lanes: LaneDynamics<N>;
+
     /// Names, units and settings.
     fn description(&self) -> &Description;
 
@@ -54,7 +69,7 @@ pub trait CraneModel<const N: usize>: Send + Sync {
     /// A run reads the inputs when it begins; [`Simulation::at_time`](crate::dynamics::Simulation::at_time) continues it with changed ones.
     fn set_input(&mut self, _index: usize, _value: Option<f64>) {}
 
-    /// The joints that close loops. Forces, accelerations and equilibria of the traits here are those of the open chain; what takes a crane
+    /// The joints that close loops. Forces, accelerations and equilibria here are those of the open chain; what takes a crane
     /// on slices closes the loops.
     fn loop_joints(&self) -> &[LoopJointInfo] {
         &[]
@@ -79,11 +94,6 @@ pub trait CraneModel<const N: usize>: Send + Sync {
         linear + self.stop_energy(q) + self.connector_energy(t, q)
     }
 
-    quantities! { sized_methods of CraneModel }
-}
-
-/// Equations of motion `A(q) q̈ = e(q, q̇) + f(t, q, q̇)`, Eq. (23).
-pub trait Dynamics<const N: usize>: CraneModel<N> {
     /// A and e together. Only the lower triangle of `mass` is written, which Cholesky's factorisation reads.
     fn mass_matrix_and_bias(
         &self,
@@ -110,48 +120,8 @@ pub trait Dynamics<const N: usize>: CraneModel<N> {
         Cholesky::new(mass).map_or(SVector::repeat(f64::NAN), |factors| factors.solve(r))
     }
 
-    quantities! { sized_methods of Dynamics }
-}
-
-/// Cranes that can be simulated eight at a time, each with its own state and parameters.
-pub trait Ensemble<const N: usize>: Dynamics<N> + Sized {
-    /// Eight cranes.
-    type Lanes: LaneDynamics<N>;
-
     /// The lanes of these eight cranes, with their parameters.
     fn lanes(cranes: [&Self; 8]) -> Self::Lanes;
-}
-
-/// Equations of motion of eight cranes, one per lane.
-pub trait LaneDynamics<const N: usize> {
-    /// Accelerations q̈ like [`Dynamics::forward_dynamics`], lane by lane.
-    fn forward_dynamics(&self, t: f64x8, q: &SVector<f64x8, N>, v: &SVector<f64x8, N>) -> SVector<f64x8, N>;
-}
-
-/// Eight cranes, evaluated one after the other: for a crane whose spec does not request `ensemble`.
-#[derive(Clone, Copy, Debug)]
-pub struct OneByOne<C>(pub [C; 8]);
-
-impl<const N: usize, C: Dynamics<N>> LaneDynamics<N> for OneByOne<C> {
-    fn forward_dynamics(&self, t: f64x8, q: &SVector<f64x8, N>, v: &SVector<f64x8, N>) -> SVector<f64x8, N> {
-        let mut lanes = [[0.0; 8]; N];
-        for (lane, (crane, t)) in self.0.iter().zip(t.to_array()).enumerate() {
-            let of = |x: &SVector<f64x8, N>| x.map(|x| x.to_array()[lane]);
-            for (lanes, x) in lanes.iter_mut().zip(&crane.forward_dynamics(t, &of(q), &of(v))) {
-                lanes[lane] = *x;
-            }
-        }
-        SVector::from(lanes.map(f64x8::new))
-    }
-}
-
-/// Functions for an implicit step: structured stiffness and damping, and systems with them at the cost of those with A.
-///
-/// All springs and dampers except connectors act on single coordinates, or in the block of the base's coordinates, which are the first of
-/// q. The coefficients of linear springs and dampers on single coordinates are constants; those of other laws are evaluated at each step.
-pub trait Implicit<const N: usize>: Dynamics<N> {
-    /// The factors that [`Implicit::factorise`] computes for [`Implicit::solve`].
-    type Factors: Send;
 
     /// Factors of `A(q) + D̂`, in O(n). D̂ is block-diagonal: `base` in the rows and columns of the base's coordinates that
     /// the crane has, and `added_inertia` on the diagonal of all others. Positive semidefinite; kg and kg m².
@@ -178,11 +148,6 @@ pub trait Implicit<const N: usize>: Dynamics<N> {
         mass * a - self.bias(q, v) - self.forces(t, q, v)
     }
 
-    quantities! { sized_methods of Implicit }
-}
-
-/// The crane at rest, with loads and winches as at time t and the drives at given positions, each at the index of its coordinate.
-pub trait Statics<const N: usize>: CraneModel<N> {
     /// Positions of the drives' motions at time t, each at the index of its coordinate; 0 at all others.
     fn drive_positions(&self, t: f64) -> SVector<f64, N> {
         let (mut motions, mut positions) = ([[0.0; 2]; N], SVector::<f64, N>::zeros());
@@ -195,30 +160,14 @@ pub trait Statics<const N: usize>: CraneModel<N> {
         positions
     }
 
-    quantities! { sized_methods of Statics }
-}
+    /// A, D and K of small motions about a pose at rest: `A δq̈ + D δq̇ + K δq = 0`.
+    fn linearise(&self, _q: &SVector<f64, N>) -> Linearisation<N> {
+        let [mass, stiffness, damping] = [SMatrix::repeat(f64::NAN); 3];
+        Linearisation { mass, stiffness, damping }
+    }
 
-/// Small motions about a pose at rest: `A δq̈ + D δq̇ + K δq = 0`.
-pub trait Linearise<const N: usize>: CraneModel<N> {
-    /// A, D and K at a pose.
-    fn linearise(&self, q: &SVector<f64, N>) -> Linearisation<N>;
-}
-
-/// Forces and moments between the parts of a crane.
-pub trait InternalForces<const N: usize>: CraneModel<N> {
-    quantities! { sized_methods of InternalForces }
-}
-
-/// Derivatives of the transforms. Each body has derivatives with respect to the coordinates that move it, the first
-/// [`degrees_of_freedom`](crate::BodyInfo::degrees_of_freedom) of `q`; all others are zero and not stored.
-pub trait TransformDerivatives<const N: usize>: CraneModel<N> {
-    quantities! { sized_methods of TransformDerivatives }
-}
-
-/// Derivatives of the dynamics, for controllers, optimization and identification.
-pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
     /// Derivatives ∂r/∂q (N/m, N, N m) and ∂r/∂v (N s/m, N s, N m s) of the residual r = A a − e − f of
-    /// [`dynamic_residual`](Implicit::dynamic_residual), row by row. `out`: 2 N rows.
+    /// [`dynamic_residual`](CraneModel::dynamic_residual), row by row. `out`: 2 N rows.
     ///
     /// `Ω_i · (Ω̈_j W + 2 Ω̇_j G + Ω_j × F) − ∂f_i/∂q_j, 2 Ω_i · (Ω̇_j W + Ω_j G) − ∂f_i/∂q̇_j`
     fn dynamic_residual_derivatives(
@@ -253,7 +202,7 @@ pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
         });
     }
 
-    /// Derivatives of the accelerations q̈ of [`forward_dynamics`](Dynamics::forward_dynamics) of the open chain: rows of ∂q̈/∂q, then of ∂q̈/∂v,
+    /// Derivatives of the accelerations q̈ of [`forward_dynamics`](CraneModel::forward_dynamics) of the open chain: rows of ∂q̈/∂q, then of ∂q̈/∂v,
     /// then of ∂q̈/∂τ = A⁻¹ with generalized forces τ. `out`: 3 N rows. For coordinates that rigid drives prescribe the rows are zero, and so are
     /// their columns of A⁻¹.
     ///
@@ -273,12 +222,35 @@ pub trait MotionDerivatives<const N: usize>: Dynamics<N> {
         });
     }
 
-    quantities! { sized_methods of MotionDerivatives }
+    quantities! { sized_methods }
+}
+
+/// Equations of motion of eight cranes, one per lane.
+pub trait LaneDynamics<const N: usize> {
+    /// Accelerations q̈ like [`CraneModel::forward_dynamics`], lane by lane.
+    fn forward_dynamics(&self, t: f64x8, q: &SVector<f64x8, N>, v: &SVector<f64x8, N>) -> SVector<f64x8, N>;
+}
+
+/// Eight cranes, evaluated one after the other: for a crane whose spec does not request `ensemble`.
+#[derive(Clone, Copy, Debug)]
+pub struct OneByOne<C>(pub [C; 8]);
+
+impl<const N: usize, C: CraneModel<N>> LaneDynamics<N> for OneByOne<C> {
+    fn forward_dynamics(&self, t: f64x8, q: &SVector<f64x8, N>, v: &SVector<f64x8, N>) -> SVector<f64x8, N> {
+        let mut lanes = [[0.0; 8]; N];
+        for (lane, (crane, t)) in self.0.iter().zip(t.to_array()).enumerate() {
+            let of = |x: &SVector<f64x8, N>| x.map(|x| x.to_array()[lane]);
+            for (lanes, x) in lanes.iter_mut().zip(&crane.forward_dynamics(t, &of(q), &of(v))) {
+                lanes[lane] = *x;
+            }
+        }
+        SVector::from(lanes.map(f64x8::new))
+    }
 }
 
 /// Calls `compute` with the coordinates of a crane and a workspace for derivatives.
 fn with_workspace<const N: usize>(
-    crane: &(impl CraneModel<N> + ?Sized),
+    crane: &impl CraneModel<N>,
     compute: impl FnOnce(&[Link], Workspace<'_, EightColumns>),
 ) {
     const UNITS: usize = units::<EightColumns>(usize::MAX);

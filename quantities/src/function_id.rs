@@ -1,6 +1,9 @@
 //! The table as data.
 
-use crate::count::{Count, Extent, Item};
+use crate::{
+    Part,
+    count::{Count, Extent, Item},
+};
 
 /// An argument of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -215,7 +218,7 @@ macro_rules! python {
 
 /// The table as an enumeration with functions.
 macro_rules! function_id {
-    ($($trait:ident { $(
+    ($($part:ident { $(
         $(#[doc = $remark:literal])*
         $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
         $(python($($python:tt)*))?;
@@ -228,7 +231,7 @@ macro_rules! function_id {
         }
 
         impl FunctionId {
-            /// All of them, trait by trait.
+            /// All of them, part by part.
             pub const ALL: &[FunctionId] = &[$($(FunctionId::$id,)*)*];
 
             /// Its name in generated code, an identifier.
@@ -239,11 +242,11 @@ macro_rules! function_id {
                 }
             }
 
-            /// The trait of the runtime that has it as a method.
+            /// The part to which it belongs.
             #[must_use]
-            pub const fn runtime_trait(self) -> RuntimeTrait {
+            pub const fn part(self) -> Part {
                 match self {
-                    $($(FunctionId::$id => RuntimeTrait::$trait,)*)*
+                    $($(FunctionId::$id => Part::$part,)*)*
                 }
             }
 
@@ -301,31 +304,6 @@ macro_rules! function_id {
                 match self {
                     $($(FunctionId::$id => python!($($($python)*)?),)*)*
                 }
-            }
-        }
-
-        /// A trait of the runtime that generated functions implement.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        #[expect(missing_docs, reason = "the traits are documented")]
-        pub enum RuntimeTrait {
-            $($trait,)*
-        }
-
-        impl RuntimeTrait {
-            /// All of them.
-            pub const ALL: &[RuntimeTrait] = &[$(RuntimeTrait::$trait,)*];
-
-            /// The name of the trait.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $(RuntimeTrait::$trait => stringify!($trait),)*
-                }
-            }
-
-            /// Its functions, in the order of their methods.
-            pub fn functions(self) -> impl Iterator<Item = FunctionId> {
-                FunctionId::ALL.iter().copied().filter(move |id| id.runtime_trait() == self)
             }
         }
     };

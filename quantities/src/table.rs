@@ -1,8 +1,7 @@
 //! The table.
 
-/// The table of the quantities that a crane computes, one row per function of generated code, by the trait of the runtime that has it as
-/// a method. `quantities! { consumer }` calls the macro `consumer` with all of it; `quantities! { consumer of Statics }` with the rows of one
-/// trait.
+/// The table of the quantities that a crane computes, one row per function of generated code, by the [`Part`](crate::Part) to which it belongs.
+/// `quantities! { consumer }` calls the macro `consumer` with it.
 ///
 /// A row is
 ///
@@ -15,20 +14,17 @@
 /// * *result*: `number`; per coordinate `vector`; over the base's coordinates `base`; n × n `matrix` and a list `[item; count]`, which are written
 ///   into the caller's: items are those of [`Item`](crate::Item), the count is one of [`Count`](crate::Count); `other`: everything about the
 ///   method is written by hand.
-/// * *rule* for cranes without such a part: the result is `zero`; it is `required` of every crane; `written`: the default of the trait
-///   is written by hand.
+/// * *rule* for cranes that do not have the function: the result is `zero`, because they lack such a component; it is `required` of every crane whose
+///   spec asks for the part, and NaN for others; `written`: the default is written by hand.
 /// * *python*: offered by the Python package, with these arguments, the one after the semicolon optional.
 #[macro_export]
 macro_rules! quantities {
-    ($consumer:ident of $trait:ident) => {
-        $crate::quantities! { @($crate::select) [$trait $consumer] }
-    };
     ($consumer:ident) => {
         $crate::quantities! { @($consumer) }
     };
     (@($($consumer:tt)*) $([$($first:tt)*])?) => {
         $($consumer)*! { $($($first)*)?
-CraneModel {
+Common {
     Transforms = transforms(q) -> [transform; bodies] required
         "Transforms T of all bodies into the world frame; translations in m."
         "T(p) = T(p−1) T̃(p) [Urbaś 2016, Eq. (3)]" python(q);
@@ -214,7 +210,7 @@ Dynamics {
         "Kinetic energy, J."
         "E_k = ½ Σ tr(Ṫ H Ṫᵀ) [Urbaś 2016, Eq. (4)]" python(q, v);
 }
-Implicit {
+Systems {
     Factorise = factorise(q, added_inertia, base) -> other written
         "Factors of `A + D̂` for [`solve`]: D̂ has `added_inertia` on its diagonal, and `base` in the base's rows and columns."
         "A + D̂, by articulated bodies at rest";
@@ -227,6 +223,8 @@ Implicit {
     DynamicResidual = dynamic_residual(t, q, v, a) -> vector written
         "Generalized forces r that a motion requires beyond those that act, N and N m."
         "r = A a − e − f, by Newton and Euler" python(q, v, a; t);
+}
+StepMatrices {
     JointStiffnessAndDamping = joint_stiffness_and_damping() -> [pair; coordinates] required
         "Stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad) on single coordinates, without those of the base."
         "s, d [Urbaś 2016, Eqs. (14), (19)]";
@@ -256,7 +254,7 @@ Statics {
         "Generalized forces of the drives that hold the crane at rest at given positions, N and N m."
         "s (q_dr − q) [Urbaś 2016, Eq. (20)]; of rigid drives ∂E_p/∂q_j; of cylinders with a valve k (ℓ₀ − ℓ) ∂ℓ/∂q" python(q; t);
 }
-Linearise {
+Modes {
     Linearise = linearise(q) -> other written
         "Mass matrix A, tangent stiffness K and damping matrix D of small motions about a pose at rest at t = 0."
         "A δq̈ + D δq̇ + K δq = 0";
@@ -287,7 +285,7 @@ InternalForces {
         "Section properties for the stresses of beams: areas (m²), moduli (m³), allowable stress (Pa); 0 where unknown."
         "A, W_y, W_z, W_t, A_y, A_z; yield stress over safety factor";
 }
-TransformDerivatives {
+Derivatives {
     TransformDerivatives = transform_derivatives(q) -> [transform; derivatives] required
         "Derivatives ∂T/∂q_j of every body, for all coordinates j that move it; 1, m, 1/m."
         "∂T/∂q_j = Ω_j T" python(q);
@@ -333,22 +331,6 @@ MotionDerivatives {
         "−A⁻¹ ∂r/∂q, −A⁻¹ ∂r/∂v, A⁻¹, at a = q̈";
 }
         }
-    };
-}
-
-/// Calls a macro with the rows of one trait.
-#[doc(hidden)]
-#[macro_export]
-macro_rules! select {
-    (CraneModel $consumer:ident CraneModel { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
-    (Dynamics $consumer:ident Dynamics { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
-    (Implicit $consumer:ident Implicit { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
-    (Statics $consumer:ident Statics { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
-    (InternalForces $consumer:ident InternalForces { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
-    (TransformDerivatives $consumer:ident TransformDerivatives { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
-    (MotionDerivatives $consumer:ident MotionDerivatives { $($row:tt)* } $($rest:tt)*) => { $consumer! { $($row)* } };
-    ($trait:ident $consumer:ident $other:ident { $($row:tt)* } $($rest:tt)*) => {
-        $crate::select! { $trait $consumer $($rest)* }
     };
 }
 

@@ -2,13 +2,9 @@
 //! allocation, and the check with CasADi, go through.
 
 use crane_codegen::program::{Extent, FunctionId, Item};
-use crane_model::dyn_crane::Crane;
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use crane_model::rt::lanes::f64x8;
-use crane_model::{
-    CraneModel, Description, Entry, LaneDynamics, Linearisation, MotionDerivatives, SectionModuli, Tension,
-    TransformDerivatives, Wrench,
-};
+use crane_model::{CraneModel, Description, Entry, LaneDynamics, Linearisation, SectionModuli, Tension, Wrench};
 use crane_quantities::quantities;
 
 /// A quantity: its name and the shape of its numbers, row-major.
@@ -101,7 +97,7 @@ impl<const N: usize> Lists<N> {
     pub fn of(crane: &impl CraneModel<N>) -> Self {
         fn list<T: Entry>(lengths: &[(Item, usize)], item: Item) -> Vec<T> {
             let of_item = lengths.iter().filter(|(of, _)| *of == item);
-            vec![T::ZERO; of_item.map(|(_, length)| *length).max().unwrap_or_default()]
+            vec![T::repeat(0.0); of_item.map(|(_, length)| *length).max().unwrap_or_default()]
         }
         let length = |id: &FunctionId| match id.extent() {
             Extent::List(item, count) => Some((item, crane.description().count(crane.loop_joints(), count))),
@@ -143,7 +139,7 @@ macro_rules! call {
 }
 
 /// Calls every method of the table and passes its numbers on, matrices row by row; allocates nothing.
-pub fn call_every<const N: usize, C: Crane<N> + TransformDerivatives<N> + MotionDerivatives<N>>(
+pub fn call_every<const N: usize, C: CraneModel<N>>(
     crane: &C,
     at: &At<'_, N>,
     lists: &mut Lists<N>,
@@ -165,7 +161,7 @@ pub fn call_every<const N: usize, C: Crane<N> + TransformDerivatives<N> + Motion
 fn part<'a, const N: usize, T: Entry>(list: &'a mut [T], crane: &impl CraneModel<N>, id: FunctionId) -> &'a mut [T] {
     let Extent::List(_, count) = id.extent() else { return &mut [] };
     let part = &mut list[..crane.description().count(crane.loop_joints(), count)];
-    part.fill(T::from_numbers(&[f64::NAN; 64][..T::LEN]));
+    part.fill(T::repeat(f64::NAN));
     part
 }
 
@@ -181,10 +177,7 @@ trait RowByRow: Entry {
 impl<T: Entry> RowByRow for T {}
 
 /// All quantities of a generated crane at a state, one after the other.
-pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N> + MotionDerivatives<N>>(
-    crane: &C,
-    state: &State,
-) -> Vec<f64> {
+pub fn evaluate<const N: usize, C: CraneModel<N>>(crane: &C, state: &State) -> Vec<f64> {
     let (t, q, v) =
         (state.t, &SVector::<f64, N>::from_column_slice(&state.q), &SVector::<f64, N>::from_column_slice(&state.v));
     let mut out = Vec::new();
@@ -212,7 +205,7 @@ pub fn evaluate<const N: usize, C: Crane<N> + TransformDerivatives<N> + MotionDe
 pub const IMPLICIT_STEP: f64 = 0.01;
 
 /// x of `(A + h D + h² K) x = v`, D and K without gravity.
-fn implicit_solution<const N: usize, C: Crane<N>>(
+fn implicit_solution<const N: usize, C: CraneModel<N>>(
     crane: &C,
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
@@ -226,7 +219,7 @@ fn implicit_solution<const N: usize, C: Crane<N>>(
 }
 
 /// Accelerations of the crane in the third lane of eight; the other lanes are in other states.
-fn in_a_lane<const N: usize, C: Crane<N>>(
+fn in_a_lane<const N: usize, C: CraneModel<N>>(
     crane: &C,
     t: f64,
     q: &SVector<f64, N>,

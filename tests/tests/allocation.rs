@@ -3,20 +3,17 @@
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
-use crane_model::dyn_crane::{Crane, DynCrane};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::nalgebra::{Matrix6, SMatrix, SVector};
 use crane_model::rt::lanes::splat;
-use crane_model::{Ensemble, LaneDynamics, MotionDerivatives, TransformDerivatives};
+use crane_model::{CraneModel, LaneDynamics};
 use crane_shipped as cranes;
 use crane_tests::exact;
 use crane_tests::quantities::{At, Lists, call_every};
 
 /// Calls every function of the traits at the guess; lists go into `lists`.
-fn every_function<const N: usize>(
-    crane: &mut (impl Crane<N> + TransformDerivatives<N> + MotionDerivatives<N>),
-    (q, lists): (&SVector<f64, N>, &mut Lists<N>),
-) {
+fn every_function<const N: usize>(crane: &mut impl CraneModel<N>, (q, lists): (&SVector<f64, N>, &mut Lists<N>)) {
     let (t, v) = (0.7, &SVector::repeat(0.1));
     let _ = black_box(crane.set_parameter(0, black_box(crane.parameter(0))));
     let at = At { t, q, v, a: v, r: v, positions: &crane.drive_positions(t) };
@@ -31,7 +28,7 @@ fn every_function<const N: usize>(
     let factors = crane.factorise(q, v, &Matrix6::identity());
     black_box((crane.solve(&factors, v), crane.linearise(q), crane.potential_energy(t, q)));
     let alike: &_ = crane;
-    let lanes = Ensemble::lanes([alike; 8]);
+    let lanes = CraneModel::lanes([alike; 8]);
     black_box(lanes.forward_dynamics(splat(t), &q.map(splat), &v.map(splat)));
     black_box((prescribed_q, prescribed_v, mass));
 }

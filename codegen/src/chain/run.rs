@@ -1,5 +1,7 @@
 //! What to compute, and the settings of a run.
 
+use crane_quantities::Part;
+
 /// Settings of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run {
@@ -44,4 +46,18 @@ impl Analyses {
         motion_derivatives: true,
         ensemble: false,
     };
+
+    /// Whether they request a part.
+    #[must_use]
+    pub const fn request(self, part: Part) -> bool {
+        match part {
+            Part::Common => true,
+            Part::Dynamics | Part::Systems | Part::StepMatrices => self.dynamics,
+            Part::Statics => self.statics,
+            Part::Modes => self.modes,
+            Part::InternalForces => self.internal_forces,
+            Part::Derivatives => self.derivatives,
+            Part::MotionDerivatives => self.motion_derivatives,
+        }
+    }
 }

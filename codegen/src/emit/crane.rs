@@ -1,4 +1,4 @@
-//! The type that implements the runtime's traits by calling the generated functions.
+//! The type that implements the runtime's trait by calling the generated functions.
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -12,14 +12,19 @@ use super::names::field_name;
 use super::number::Number;
 use super::print::plain;
 use super::shape::{Storage, struct_name};
-use crate::chain::{Chain, Input};
+use crate::chain::{Analyses, Chain, Input};
 use crate::lower::{LoweredFunction, LoweredProgram};
-use crate::program::{Argument, FunctionId, RuntimeTrait, Shape};
+use crate::program::{Argument, FunctionId, Part, Shape};
 
-/// `Crane` and its traits.
-pub fn crane(chain: &Chain, lowered: &LoweredProgram) -> Vec<Item> {
+/// `Crane` and its methods; `lanes`: the type of eight cranes, and the method that makes them.
+pub fn crane(
+    chain: &Chain,
+    analyses: Analyses,
+    lowered: &LoweredProgram,
+    lanes: (TokenStream, TokenStream),
+) -> Vec<Item> {
     let live = !chain.parameters.is_empty();
-    let title = format!(" {}: the generated functions behind the traits of the runtime.", plain(&chain.title));
+    let title = format!(" {}: the generated functions behind the trait of the runtime.", plain(&chain.title));
     let has_inputs = !chain.inputs.is_empty();
     let fields = fields(chain);
     let inputs = has_inputs.then(|| quote!(, inputs: NOT_SET));
@@ -72,34 +77,49 @@ pub fn crane(chain: &Chain, lowered: &LoweredProgram) -> Vec<Item> {
             }
         }
     });
-    for runtime_trait in RuntimeTrait::ALL {
-        let methods: Vec<_> = runtime_trait
-            .functions()
-            .filter_map(|id| lowered.functions.iter().find(|code| code.function.id == id))
-            .map(|code| match code.function.id {
-                FunctionId::PrescribedMotions => prescribe(chain, code),
-                _ => method(code),
-            })
-            .collect();
-        if methods.is_empty() {
-            continue;
-        }
-        let common = match runtime_trait {
-            RuntimeTrait::CraneModel => common_methods(chain),
-            RuntimeTrait::Implicit => quote!(
-                type Factors = Factors;
+    let parts = Part::ALL.into_iter().filter(|part| analyses.request(*part));
+    let parts = parts.map(|part| format_ident!("{part:?}"));
+    let (factors, factorise) = match find(lowered, FunctionId::Factorise) {
+        Some(code) => (quote!(Factors), method(code)),
+        None => (
+            quote!(()),
+            quote!(
+                fn factorise(
+                    &self,
+                    _q: &SVector<f64, N>,
+                    _added_inertia: &SVector<f64, N>,
+                    _base: &SMatrix<f64, 6, 6>,
+                ) {
+                }
             ),
-            _ => quote!(),
-        };
-        let name = format_ident!("{}", runtime_trait.name());
-        items.push(parse_quote! {
-            impl #name<N> for Crane {
-                #common
-                #(#methods)*
-            }
+        ),
+    };
+    let (lanes, make_lanes) = lanes;
+    let common = common_methods(chain);
+    let methods =
+        FunctionId::ALL.iter().filter_map(|id| find(lowered, *id)).filter_map(|code| match code.function.id {
+            FunctionId::Factorise => None,
+            FunctionId::PrescribedMotions => Some(prescribe(chain, code)),
+            _ => Some(method(code)),
         });
-    }
+    items.push(parse_quote! {
+        impl CraneModel<N> for Crane {
+            const PARTS: &'static [Part] = &[#(Part::#parts),*];
+
+            type Factors = #factors;
+            type Lanes = #lanes;
+
+            #common
+            #make_lanes
+            #factorise
+            #(#methods)*
+        }
+    });
     items
+}
+
+fn find<'a>(lowered: &'a LoweredProgram<'a>, id: FunctionId) -> Option<&'a LoweredFunction<'a>> {
+    lowered.functions.iter().find(|code| code.function.id == id)
 }
 
 /// Fields of a crane, or of eight cranes.

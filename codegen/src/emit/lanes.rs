@@ -1,5 +1,6 @@
 //! Eight cranes per call: the same statements over vectors of eight numbers, each crane with its own state and parameters.
 
+use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::{Item, ItemMod, parse_quote};
 
@@ -19,20 +20,19 @@ use crate::program::FunctionId;
 const FUNCTIONS: [FunctionId; 1] = [FunctionId::ForwardDynamics];
 
 /// Eight cranes per call for a spec that does not request them: one after the other.
-pub fn one_by_one() -> Item {
-    parse_quote! {
-        impl Ensemble<N> for Crane {
-            type Lanes = OneByOne<Crane>;
-
+pub fn one_by_one() -> (TokenStream, TokenStream) {
+    (
+        quote!(OneByOne<Crane>),
+        quote! {
             fn lanes(cranes: [&Self; 8]) -> OneByOne<Crane> {
                 OneByOne(cranes.map(|crane| *crane))
             }
-        }
-    }
+        },
+    )
 }
 
-/// The module `lanes`, and the function that makes eight cranes from one.
-pub fn lanes(chain: &Chain, lowered: &LoweredProgram, labels: &Labels) -> Vec<Item> {
+/// The module `lanes`, the type of eight cranes in it, and the method that makes them.
+pub fn lanes(chain: &Chain, lowered: &LoweredProgram, labels: &Labels) -> (Item, (TokenStream, TokenStream)) {
     let mut items = parameters::parameters(chain, lowered, labels, Number::Lanes);
     for code in lowered.functions.iter().filter(|code| FUNCTIONS.contains(&code.function.id)) {
         items.extend(function::function(lowered, code, labels, Number::Lanes));
@@ -121,16 +121,10 @@ pub fn lanes(chain: &Chain, lowered: &LoweredProgram, labels: &Labels) -> Vec<It
         content.append(&mut items);
     }
     let cranes = if live || has_inputs { quote!(cranes) } else { quote!(_cranes) };
-    vec![
-        Item::Mod(module),
-        parse_quote! {
-            impl Ensemble<N> for Crane {
-                type Lanes = lanes::Cranes;
-
-                fn lanes(#cranes: [&Self; 8]) -> lanes::Cranes {
-                    #make_lanes
-                }
-            }
-        },
-    ]
+    let make = quote! {
+        fn lanes(#cranes: [&Self; 8]) -> lanes::Cranes {
+            #make_lanes
+        }
+    };
+    (Item::Mod(module), (quote!(lanes::Cranes), make))
 }

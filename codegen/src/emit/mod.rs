@@ -77,12 +77,15 @@ pub fn emit(
         }
         items.extend(function::function(lowered, code, &labels, Number::Single));
     }
-    items.extend(crane::crane(chain, lowered));
-    if analyses.ensemble {
-        items.extend(lanes::lanes(chain, lowered, &labels));
-    } else if analyses.dynamics {
-        items.push(lanes::one_by_one());
-    }
+    let (module, lanes) = match analyses.ensemble {
+        true => {
+            let (module, lanes) = lanes::lanes(chain, lowered, &labels);
+            (Some(module), lanes)
+        }
+        false => (None, lanes::one_by_one()),
+    };
+    items.extend(module);
+    items.extend(crane::crane(chain, analyses, lowered, lanes));
     items.iter_mut().for_each(allow_double_underscores);
     let imports = imports(&items);
     let body = print::file(items);
@@ -130,35 +133,28 @@ fn imports(items: &[syn::Item]) -> String {
                 "CylinderInfo",
                 "Description",
                 "DriveInfo",
-                "Dynamics",
-                "Ensemble",
                 "EventInfo",
-                "Implicit",
                 "InputInfo",
-                "InternalForces",
                 "JoinsInfo",
                 "Linearisation",
-                "Linearise",
                 "List",
                 "LoadInfo",
                 "LoopEquationInfo",
                 "LoopJointInfo",
                 "Moment",
-                "MotionDerivatives",
                 "OneByOne",
                 "ParameterError",
                 "ParameterInfo",
+                "Part",
                 "PumpInfo",
                 "Refusal",
                 "SectionInfo",
                 "SectionModuli",
                 "Side",
                 "StageInfo",
-                "Statics",
                 "SupportInfo",
                 "Tension",
                 "Text",
-                "TransformDerivatives",
                 "ValveInfo",
                 "Wrench",
             ],

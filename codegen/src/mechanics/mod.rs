@@ -51,11 +51,10 @@ mod turning;
 mod twist;
 mod vector;
 
-pub use functions::Part;
 pub use omissions::left_out;
 
 use crate::chain::{Analyses, Chain};
-use crate::program::Program;
+use crate::program::{Part, Program};
 use crate::symbolic::Graph;
 
 /// The functions of a crane that `analyses` request and that the crane needs, over one simplified graph.

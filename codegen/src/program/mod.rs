@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 use crate::symbolic::{ExprId, Graph, Nodes, Op, SweepTrace, SymbolId};
 
 pub use count::OperationCount;
-pub use crane_quantities::{Argument, Count, Extent, FunctionId, Item, RuntimeTrait};
+pub use crane_quantities::{Argument, Count, Extent, FunctionId, Item, Part};
 pub use interpret::Inputs;
 pub use longest_chain::Latencies;
 pub use product::{PULLED_BACK, Product, has_products};

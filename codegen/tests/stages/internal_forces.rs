@@ -301,5 +301,5 @@ fn who_does_not_ask_does_not_pay() {
     assert!(!code.contains("fn internal_forces"));
     assert!(!code.contains("Wrench"));
     let code = compile::generate(&chain, Analyses { internal_forces: true, ..chain.analyses }, "test.yaml").text;
-    assert!(code.contains("impl InternalForces<N> for Crane"));
+    assert!(code.contains("Part::InternalForces"));
 }

@@ -1,34 +1,41 @@
-//! A crane of any kind, as what takes cranes on slices receives it.
+//! A crane of any kind, as solvers receive it.
 
 use std::ops::Deref;
 
-use super::{DynCrane, DynDynamics, DynImplicit, DynStatics, Instance};
-use crate::{Dynamics, Implicit, Statics};
+use crane_quantities::Part;
 
-/// A crane on slices, `D`: a reference to one, or an [`Instance`] that has a reference to a crane of a size in its type.
-pub enum CraneRef<'a, D: ?Sized> {
+use super::{DynCrane, Instance};
+use crate::CraneModel;
+
+/// A crane on slices: a reference to one, or an [`Instance`] of a crane of a size in its type.
+pub enum CraneRef<'a> {
     /// A crane of any size.
-    Slices(&'a D),
+    Slices(&'a dyn DynCrane),
     /// A crane of a size in its type.
-    Instance(Box<D>),
+    Instance(Box<dyn DynCrane>),
 }
 
-impl<D: ?Sized> Deref for CraneRef<'_, D> {
-    type Target = D;
+impl<'a> Deref for CraneRef<'a> {
+    type Target = dyn DynCrane + 'a;
 
-    fn deref(&self) -> &D {
+    fn deref(&self) -> &Self::Target {
         match self {
-            Self::Slices(crane) => crane,
-            Self::Instance(crane) => crane,
+            Self::Slices(crane) => *crane,
+            Self::Instance(crane) => &**crane,
         }
     }
 }
 
 /// References to cranes that solvers take: those of a size in their type, `&knuckle_boom::Crane`, and those of any size, `&LiveCrane` and `&dyn DynCrane`.
-/// `D` is the trait of cranes on slices that a solver needs. `Size` is [`OfSize`] or [`AnySize`], and is inferred.
-pub trait AnyCrane<'a, D: ?Sized, Size> {
-    /// The same crane on slices.
-    fn on_slices(self) -> CraneRef<'a, D>;
+/// `Size` is [`OfSize`] or [`AnySize`], and is inferred.
+///
+/// With a crane of a size in its type, a solver whose part the spec's `analyses` left out does not compile.
+pub trait AnyCrane<'a, Size> {
+    /// The same crane on slices, for statics.
+    fn for_statics(self) -> CraneRef<'a>;
+
+    /// The same crane on slices, for motion.
+    fn for_dynamics(self) -> CraneRef<'a>;
 }
 
 /// Cranes with `N` coordinates in their type.
@@ -39,25 +46,36 @@ pub struct OfSize<const N: usize>;
 #[derive(Clone, Copy, Debug)]
 pub struct AnySize;
 
-macro_rules! any_crane {
-    ($($slices:ident of $sized:ident),*) => { $(
-        impl<'a, const N: usize, C: $sized<N>> AnyCrane<'a, dyn $slices + 'a, OfSize<N>> for &'a C {
-            fn on_slices(self) -> CraneRef<'a, dyn $slices + 'a> {
-                CraneRef::Instance(Box::new(Instance::<N, _>(self)))
-            }
-        }
+impl<'a, const N: usize, C: CraneModel<N>> AnyCrane<'a, OfSize<N>> for &'a C {
+    fn for_statics(self) -> CraneRef<'a> {
+        const { assert!(Part::Statics.is_in(C::PARTS), "the crane has no statics: add `statics` to `analyses` of its spec") }
+        CraneRef::Instance(Box::new(Instance::<N, _>(self.clone())))
+    }
 
-        any_crane! { $slices by &'a C, C: $slices }
-        any_crane! { $slices by &'a (dyn $slices + 'a), }
-        any_crane! { $slices by &'a (dyn DynCrane + 'a), }
-    )* };
-    ($slices:ident by $crane:ty, $($bound:tt)*) => {
-        impl<'a, $($bound)*> AnyCrane<'a, dyn $slices + 'a, AnySize> for $crane {
-            fn on_slices(self) -> CraneRef<'a, dyn $slices + 'a> {
+    fn for_dynamics(self) -> CraneRef<'a> {
+        const {
+            assert!(
+                Part::Dynamics.is_in(C::PARTS),
+                "the crane has no dynamics: add `dynamics` to `analyses` of its spec"
+            )
+        }
+        CraneRef::Instance(Box::new(Instance::<N, _>(self.clone())))
+    }
+}
+
+macro_rules! any_size {
+    ($crane:ty $(, $bound:tt: $of:ident)?) => {
+        impl<'a $(, $bound: $of)?> AnyCrane<'a, AnySize> for $crane {
+            fn for_statics(self) -> CraneRef<'a> {
+                CraneRef::Slices(self)
+            }
+
+            fn for_dynamics(self) -> CraneRef<'a> {
                 CraneRef::Slices(self)
             }
         }
     };
 }
 
-any_crane! { DynStatics of Statics, DynDynamics of Dynamics, DynImplicit of Implicit }
+any_size! { &'a C, C: DynCrane }
+any_size! { &'a (dyn DynCrane + 'a) }

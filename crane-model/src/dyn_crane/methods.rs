@@ -1,23 +1,23 @@
-//! Methods of the traits on slices, and of [`Instance`](super::Instance), from the table of quantities.
+//! Methods of cranes on slices, and of [`Instance`](super::Instance), from the table of quantities.
 
-/// The methods of a trait on slices.
+/// The methods of a crane on slices.
 macro_rules! slice_methods {
-    ($(
+    ($($part:ident { $(
         $(#[doc = $remark:literal])*
         $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
         $(python($($python:tt)*))?;
-    )*) => {
-        $(slice_method! {
+    )* })*) => {
+        $($(slice_method! {
             $result [
                 #[allow(clippy::doc_markdown, reason = "names of symbols, as in generated code")]
                 #[doc = $doc]
                 #[doc = concat!("\n`", $equation, "`")]
             ] $name($($argument),*)
-        })*
+        })*)*
     };
 }
 
-/// A method of a trait on slices.
+/// A method of a crane on slices.
 macro_rules! slice_method {
     (other $($row:tt)*) => {};
     ([$item:ident; $count:ident] [$($about:tt)*] $name:ident($($argument:ident),*)) => {
@@ -42,12 +42,12 @@ macro_rules! slice_method {
 
 /// The methods of an instance, which call those of the crane with the size in its type.
 macro_rules! instance_methods {
-    ($(
+    ($($part:ident { $(
         $(#[doc = $remark:literal])*
         $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
         $(python($($python:tt)*))?;
-    )*) => {
-        $(instance_method! { $result $name($($argument),*) })*
+    )* })*) => {
+        $($(instance_method! { $result $name($($argument),*) })*)*
     };
 }
 

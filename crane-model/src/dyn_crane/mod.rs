@@ -1,21 +1,7 @@
 //! Cranes of any size through one pointer: the traits of a generated crane on slices.
 //!
-//! Statics, integrators, modes and stability are implemented once, in terms of these traits. A trait here is the counterpart of
-//! a trait with the number of coordinates in its type; [`Instance`] adapts one to the other. Solvers take [both](AnyCrane).
-//!
-//! | here | counterpart | used by |
-//! |---|---|---|
-//! | [`DynModel`] | [`CraneModel`](crate::CraneModel) | everything |
-//! | [`DynStatics`] | [`Statics`](crate::Statics) | the crane at rest |
-//! | [`DynDynamics`] | [`Dynamics`](crate::Dynamics) | explicit methods |
-//! | [`DynImplicit`] | [`Implicit`](crate::Implicit) | implicit methods |
-//! | [`DynLinearise`] | [`Linearise`](crate::Linearise) | modes, stability |
-//! | [`DynLineariseMotion`] | none: only cranes that are not compiled have it | modes about a motion |
-//! | [`DynInternalForces`] | [`InternalForces`](crate::InternalForces) | bearing loads, stresses |
-//! | [`DynEnsemble`] | [`Ensemble`](crate::Ensemble) | runs of many cranes |
-//! | [`DynDerivatives`] | [`TransformDerivatives`](crate::TransformDerivatives) | tables of derivatives |
-//! | [`DynMotionDerivatives`] | [`MotionDerivatives`](crate::MotionDerivatives) | controllers, optimization |
-//! | [`DynCrane`] | all of them except derivatives | the command |
+//! Statics, integrators, modes and stability are implemented once, in terms of [`DynCrane`]. It is the counterpart of [`CraneModel`](crate::CraneModel), which
+//! has the number of coordinates in its type; [`Instance`] adapts one to the other. Solvers take [both](AnyCrane).
 //!
 //! # Slices
 //! `q`, `v`, `r` and results per coordinate have as many numbers as [`Description::coordinates`], in that order; lists of
@@ -30,17 +16,22 @@ mod methods;
 mod quantities;
 
 pub use any::{AnyCrane, AnySize, CraneRef, OfSize};
-use crane_quantities::{Count, quantities};
+use crane_quantities::{Count, Part, quantities};
 pub(crate) use instance::Block;
-pub use instance::{Crane, Instance, boxed};
+pub use instance::{Instance, boxed};
 pub use quantities::Energies;
 
 use methods::{slice_method, slice_methods};
 
 use crate::{Description, LoopJointInfo, ParameterError, StageInfo, entry_type, rt::lanes::f64x8, slice_argument};
 
-/// Poses, forces and potential energy of a crane: [`CraneModel`](crate::CraneModel) on slices.
-pub trait DynModel: Send + Sync {
+/// Everything that is computed of a crane: [`CraneModel`](crate::CraneModel) on slices.
+///
+/// Functions that return owned lists and matrices are methods of [`dyn DynCrane`](trait.DynCrane.html#impl-dyn+DynCrane).
+pub trait DynCrane: Send + Sync {
+    /// The parts of the table of quantities that it has. Functions of others are NaN.
+    fn parts(&self) -> &[Part];
+
     /// Names, units and settings.
     fn description(&self) -> &Description;
 
@@ -87,7 +78,7 @@ pub trait DynModel: Send + Sync {
         self.description().coordinates.len()
     }
 
-    /// How many cranes it is: a [fleet](DynEnsemble::fleet) is several.
+    /// How many cranes it is: a [fleet](Self::fleet) is several.
     fn cranes(&self) -> usize {
         1
     }
@@ -100,115 +91,6 @@ pub trait DynModel: Send + Sync {
         self.description().by_coordinate(&positions)
     }
 
-    quantities! { slice_methods of CraneModel }
-}
-
-/// The crane at rest, with loads and winches as at time t and the drives at given positions, by coordinate: [`Statics`](crate::Statics) on
-/// slices.
-pub trait DynStatics: DynModel {
-    quantities! { slice_methods of Statics }
-}
-
-/// Equations of motion: [`Dynamics`](crate::Dynamics) on slices.
-pub trait DynDynamics: DynModel {
-    quantities! { slice_methods of Dynamics }
-}
-
-/// Functions for an implicit step: [`Implicit`](crate::Implicit) on slices.
-pub trait DynImplicit: DynDynamics {
-    /// Storage for the factors of a system of this crane; created once per run.
-    fn system(&self) -> Box<dyn DynSystem + '_>;
-
-    quantities! { slice_methods of Implicit }
-}
-
-/// Systems `(A(q) + D̂) x = r` of a crane, one after the other.
-pub trait DynSystem: Send {
-    /// Factorises `A(q) + D̂`, like [`Implicit::factorise`](crate::Implicit::factorise); `base` column by column.
-    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]);
-
-    /// The solution x of the system that was factorised last; NaN before the first factorisation.
-    fn solve(&mut self, r: &[f64], out: &mut [f64]);
-}
-
-/// Small motions about a pose at rest: [`Linearise`](crate::Linearise) on slices.
-pub trait DynLinearise: DynModel {
-    /// A, K and D at a pose, each n × n.
-    fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]);
-}
-
-/// Small motions about any motion.
-pub trait DynLineariseMotion: DynDynamics {
-    /// `A`, `K = ∂(A a − e − f)/∂q` and `D = −∂(e + f)/∂v` at time t, pose q, rates v and accelerations a, each n × n, column by
-    /// column: `A δq̈ + D δq̇ + K δq = 0`. K and D contain centrifugal and gyroscopic terms and need not be symmetric. Coordinates that
-    /// rigid drives prescribe oscillate separately at 1 rad/s.
-    fn linearise_motion(
-        &self,
-        t: f64,
-        motion: [&[f64]; 3],
-        mass: &mut [f64],
-        stiffness: &mut [f64],
-        damping: &mut [f64],
-    );
-}
-
-/// Forces and moments between the parts of a crane: [`InternalForces`](crate::InternalForces) on slices.
-pub trait DynInternalForces: DynModel {
-    quantities! { slice_methods of InternalForces }
-}
-
-/// Evaluation of several cranes at a time, each with its own state and parameters: [`Ensemble`](crate::Ensemble) on slices.
-pub trait DynEnsemble: DynDynamics {
-    /// The number of cranes in a block: a multiple of eight.
-    fn lanes(&self) -> usize {
-        8
-    }
-
-    /// A block of cranes that differ from this one in their parameters: one slice per lane, the values in the order of the
-    /// description.
-    ///
-    /// # Errors
-    /// The parameters of a lane break a rule of the spec language.
-    fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError>;
-
-    /// A fleet: cranes that differ from this one in their parameters and inputs, as one crane. Each of its lists has the items of all, the same item of
-    /// each crane next to each other: coordinate i of crane k of m is coordinate m i + k. Its description is [`Description::of_fleet`]. Energies are
-    /// those of all. A row over the coordinates is that of the same item of all cranes: the number of rows is that of one crane. Matrices are NaN, and its
-    /// parents are those of one crane: a fleet has no tree, no cuts and no derivatives.
-    ///
-    /// `None` if one crane after the other is not slower. The fleet may have more cranes: copies of the last one.
-    fn fleet(&self, _cranes: &[&dyn DynModel]) -> Option<Box<dyn DynCrane>> {
-        None
-    }
-}
-
-/// Several cranes that are evaluated together.
-///
-/// With w = lanes/8 vectors per number, lane l of coordinate i is element `l % 8` of vector `i w + l / 8`.
-pub trait DynBlock {
-    /// Accelerations q̈ of every lane.
-    fn forward_dynamics(&mut self, t: f64, q: &[f64x8], v: &[f64x8], out: &mut [f64x8]);
-}
-
-/// Derivatives of the transforms: [`TransformDerivatives`](crate::TransformDerivatives) on slices.
-pub trait DynDerivatives: DynModel {
-    quantities! { slice_methods of TransformDerivatives }
-}
-
-/// Derivatives of the dynamics: [`MotionDerivatives`](crate::MotionDerivatives) on slices.
-pub trait DynMotionDerivatives: DynDynamics {
-    /// Rows of ∂q̈/∂q, ∂q̈/∂v and ∂q̈/∂τ = A⁻¹, 3 n rows of n numbers:
-    /// [`MotionDerivatives::forward_dynamics_derivatives`](crate::MotionDerivatives::forward_dynamics_derivatives).
-    fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
-
-    quantities! { slice_methods of MotionDerivatives }
-}
-
-/// A crane with every analysis except three that are rarely needed: derivatives of transforms, [`DynDerivatives`], derivatives of the dynamics,
-/// [`DynMotionDerivatives`], and small motions about a motion, [`DynLineariseMotion`].
-///
-/// Functions that return owned lists and matrices are methods of [`dyn DynCrane`](trait.DynCrane.html#impl-dyn+DynCrane).
-pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynInternalForces + DynEnsemble + Send + Sync {
     /// Sets a live parameter. An index out of range changes nothing.
     ///
     /// # Errors
@@ -227,4 +109,55 @@ pub trait DynCrane: DynStatics + DynImplicit + DynLinearise + DynInternalForces 
 
     /// A separate crane with the same parameters and inputs.
     fn boxed_clone(&self) -> Box<dyn DynCrane>;
+
+    /// Storage for the factors of a system of this crane; created once per run.
+    fn system(&self) -> Box<dyn DynSystem + '_>;
+
+    /// A, K and D at a pose, each n × n.
+    fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]);
+
+    /// Rows of ∂q̈/∂q, ∂q̈/∂v and ∂q̈/∂τ = A⁻¹, 3 n rows of n numbers:
+    /// [`CraneModel::forward_dynamics_derivatives`](crate::CraneModel::forward_dynamics_derivatives).
+    fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
+
+    /// The number of cranes in a block: a multiple of eight.
+    fn lanes(&self) -> usize {
+        8
+    }
+
+    /// A block of cranes that differ from this one in their parameters: one slice per lane, the values in the order of the
+    /// description.
+    ///
+    /// # Errors
+    /// The parameters of a lane break a rule of the spec language.
+    fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError>;
+
+    /// A fleet: cranes that differ from this one in their parameters and inputs, as one crane. Each of its lists has the items of all, the same item of
+    /// each crane next to each other: coordinate i of crane k of m is coordinate m i + k. Its description is [`Description::of_fleet`]. Energies are
+    /// those of all. A row over the coordinates is that of the same item of all cranes: the number of rows is that of one crane. Matrices are NaN, and its
+    /// parents are those of one crane: a fleet has no tree, no cuts and no derivatives.
+    ///
+    /// `None` if one crane after the other is not slower. The fleet may have more cranes: copies of the last one.
+    fn fleet(&self, _cranes: &[&dyn DynCrane]) -> Option<Box<dyn DynCrane>> {
+        None
+    }
+
+    quantities! { slice_methods }
+}
+
+/// Systems `(A(q) + D̂) x = r` of a crane, one after the other.
+pub trait DynSystem: Send {
+    /// Factorises `A(q) + D̂`, like [`CraneModel::factorise`](crate::CraneModel::factorise); `base` column by column.
+    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]);
+
+    /// The solution x of the system that was factorised last; NaN before the first factorisation.
+    fn solve(&mut self, r: &[f64], out: &mut [f64]);
+}
+
+/// Several cranes that are evaluated together.
+///
+/// With w = lanes/8 vectors per number, lane l of coordinate i is element `l % 8` of vector `i w + l / 8`.
+pub trait DynBlock {
+    /// Accelerations q̈ of every lane.
+    fn forward_dynamics(&mut self, t: f64, q: &[f64x8], v: &[f64x8], out: &mut [f64x8]);
 }

@@ -3,7 +3,7 @@
 use crane_quantities::Count;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
-use super::{DynCrane, DynDerivatives, DynImplicit, DynModel};
+use super::DynCrane;
 use crate::{CoordinateKind, CoordinateRole, Description, SectionModuli, Tension, Tree};
 
 /// Energies of a crane, J.
@@ -47,13 +47,13 @@ impl Energies {
 }
 
 /// Numbers per coordinate, written by `write`.
-fn numbers(crane: &(impl DynModel + ?Sized), write: impl FnOnce(&mut [f64])) -> Vec<f64> {
+fn numbers(crane: &dyn DynCrane, write: impl FnOnce(&mut [f64])) -> Vec<f64> {
     let mut out = vec![0.0; crane.size()];
     write(&mut out);
     out
 }
 
-impl dyn DynImplicit + '_ {
+impl dyn DynCrane + '_ {
     /// Stiffness of every drive at rest in a pose, N m/rad or N/m; 0 for rigid drives and for drives beyond their limit.
     pub(crate) fn drive_stiffness(&self, q: &[f64]) -> Vec<f64> {
         let drives = &self.description().drives;
@@ -62,13 +62,6 @@ impl dyn DynImplicit + '_ {
         self.drive_limits(0.0, q, &vec![0.0; q.len()], &mut limits);
         // The stiffness of a drive with a limit is not among the linear ones.
         drives.iter().zip(limits).map(|(drive, [_, limited])| linear[drive.coordinate][0].max(limited)).collect()
-    }
-}
-
-impl dyn DynModel + '_ {
-    /// What the bodies are attached to.
-    pub fn tree(&self) -> Tree {
-        Tree::new(self.description(), self.parents())
     }
 }
 
@@ -128,7 +121,7 @@ impl dyn DynCrane + '_ {
         out
     }
 
-    /// Prescribed positions, one per drive. [`drive_positions_at`](super::DynModel::drive_positions_at) has them by coordinate, as functions take them.
+    /// Prescribed positions, one per drive. [`drive_positions_at`](super::DynCrane::drive_positions_at) has them by coordinate, as functions take them.
     pub fn drive_targets_at(&self, t: f64) -> Vec<f64> {
         self.drive_motions_at(t).into_iter().map(|[position, _]| position).collect()
     }
@@ -293,7 +286,7 @@ impl dyn DynCrane + '_ {
 ///
 /// # Panics
 /// If `q` does not have as many numbers as the crane has coordinates.
-impl dyn DynDerivatives + '_ {
+impl dyn DynCrane + '_ {
     /// `∂T/∂q_j`, body by body, for the coordinates j that move it.
     pub fn transform_derivatives_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
         let count = self.description().bodies.iter().map(|body| body.degrees_of_freedom).sum();

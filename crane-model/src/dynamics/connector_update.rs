@@ -14,7 +14,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::{
     Tension,
-    dyn_crane::{DynImplicit, DynSystem},
+    dyn_crane::{DynCrane, DynSystem},
     interleaved,
 };
 
@@ -54,7 +54,7 @@ struct Row {
 
 impl ConnectorUpdate {
     /// Storage for the connectors of a crane.
-    pub fn new(crane: &dyn DynImplicit) -> Self {
+    pub fn new(crane: &dyn DynCrane) -> Self {
         let (n, cranes) = (crane.size(), crane.cranes());
         let connectors = &crane.description().connectors;
         let count = connectors.len() / cranes;
@@ -82,7 +82,7 @@ impl ConnectorUpdate {
     /// Evaluates J, k and d at a state, and prepares solutions; `factors` are those of the system without connectors.
     pub fn factorise(
         &mut self,
-        crane: &dyn DynImplicit,
+        crane: &dyn DynCrane,
         t: f64,
         (q, v): (&[f64], &[f64]),
         c: f64,
@@ -134,7 +134,7 @@ impl ConnectorUpdate {
     }
 
     /// Whether at a state a connector resists much more or much less than where the system was factorised.
-    pub fn switched(&mut self, crane: &dyn DynImplicit, t: f64, (q, v): (&[f64], &[f64])) -> bool {
+    pub fn switched(&mut self, crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64])) -> bool {
         if self.rows.is_empty() {
             return false;
         }

@@ -30,8 +30,8 @@ use super::{
     typed,
 };
 use crate::{
-    Dynamics,
-    dyn_crane::{DynDynamics, Instance},
+    CraneModel,
+    dyn_crane::{DynCrane, Instance},
 };
 
 /// Stages.
@@ -66,13 +66,13 @@ const DENSE: [f64; STAGES] = [
 ///
 /// # Errors
 /// An acceleration is not finite.
-pub fn step<const N: usize, C: Dynamics<N>>(
+pub fn step<const N: usize, C: CraneModel<N>>(
     crane: &C,
     t: f64,
     h: f64,
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
-    let crane = Instance::<N, _>(crane);
+    let crane = Instance::<N, _>(crane.clone());
     let mut equations = Equations::new(&crane, References::rigid(&crane));
     typed::step(&mut equations, t, h, state, &mut Tableau::new(2 * N))
 }
@@ -82,7 +82,7 @@ pub struct DormandPrince<'a>(Adaptive<'a, Tableau>);
 
 impl<'a> DormandPrince<'a> {
     /// Creates the motion, with the tolerance of the settings.
-    pub fn new(crane: &'a dyn DynDynamics, settings: &Settings) -> Self {
+    pub fn new(crane: &'a dyn DynCrane, settings: &Settings) -> Self {
         let equations = Equations::new(crane, References::rigid(crane));
         let norm = Norm::with_states(crane, settings.tolerance);
         Self(Adaptive::new(Tableau::new(equations.len()), equations, norm))

@@ -2,7 +2,7 @@
 //!
 //! With the classical Runge–Kutta method, the operations of a lane are those of [`rk4`], in the same order, with the accelerations of
 //! [`LaneDynamics`] or [`DynBlock`]: a crane's motion does not depend on the other lanes. With adaptive methods the cranes are a
-//! [fleet](crate::dyn_crane::DynEnsemble::fleet), one crane with the coordinates of all: the crane with the largest error decides on each step.
+//! [fleet](crate::dyn_crane::DynCrane::fleet), one crane with the coordinates of all: the crane with the largest error decides on each step.
 
 use std::convert::Infallible;
 
@@ -17,8 +17,8 @@ use super::{
     stops::Stops,
 };
 use crate::{
-    CoordinateRole, Description, Ensemble, LaneDynamics, ParameterError,
-    dyn_crane::{Block, DynBlock, DynCrane, DynModel, Instance},
+    CoordinateRole, CraneModel, Description, LaneDynamics, ParameterError,
+    dyn_crane::{Block, DynBlock, DynCrane, Instance},
     force_states::ForceStates,
     loop_joints::Loops,
     rt::lanes::f64x8,
@@ -97,15 +97,15 @@ pub trait Members {
     fn in_batches(self, run: &mut dyn FnMut(usize, Batch<'_>)) -> Result<(), Self::Refused>;
 }
 
-impl<const N: usize, C: Ensemble<N>> Members for &[(C, State<N>)] {
+impl<const N: usize, C: CraneModel<N>> Members for &[(C, State<N>)] {
     type Refused = Infallible;
 
     fn in_batches(self, run: &mut dyn FnMut(usize, Batch<'_>)) -> Result<(), Infallible> {
         for (index, cranes) in self.chunks(LANES).enumerate() {
             let mut block = Block::<N, _>(C::lanes(std::array::from_fn(|lane| &cranes[lane.min(cranes.len() - 1)].0)));
             let starts: Vec<InitialState> = cranes.iter().map(|(_, start)| start.into()).collect();
-            let models: Vec<_> = cranes.iter().map(|(crane, _)| Instance::<N, _>(crane)).collect();
-            let models = models.iter().map(|model| model as &dyn DynModel).collect();
+            let models: Vec<_> = cranes.iter().map(|(crane, _)| Instance::<N, _>(crane.clone())).collect();
+            let models = models.iter().map(|model| model as &dyn DynCrane).collect();
             run(index * LANES, Batch::new(&mut block, LANES, starts.iter(), models));
         }
         Ok(())
@@ -123,7 +123,7 @@ impl Members for (&dyn DynCrane, &[Member]) {
             let mut block = crane.block(&(0..lanes).map(parameters).collect::<Vec<_>>())?;
             let starts = members.iter().map(|member| &member.start);
             let models: Vec<_> = members.iter().map(|member| member.crane(crane)).collect::<Result<_, _>>()?;
-            let models = models.iter().map(|model| model.as_ref() as &dyn DynModel).collect();
+            let models = models.iter().map(|model| model.as_ref() as &dyn DynCrane).collect();
             run(index * lanes, Batch::new(block.as_mut(), lanes, starts, models));
         }
         Ok(())
@@ -196,7 +196,7 @@ pub struct Batch<'a> {
     block: &'a mut dyn DynBlock,
     description: &'a Description,
     /// The cranes one by one; copies of the last one fill the remaining lanes, whose results are ignored.
-    models: Vec<&'a dyn DynModel>,
+    models: Vec<&'a dyn DynCrane>,
     /// Whether rigid drives prescribe coordinates.
     prescribes: bool,
     /// Pose and rates of a lane.
@@ -214,7 +214,7 @@ impl<'a> Batch<'a> {
         block: &'a mut dyn DynBlock,
         lanes: usize,
         starts: impl ExactSizeIterator<Item = &'s InitialState> + Clone,
-        models: Vec<&'a dyn DynModel>,
+        models: Vec<&'a dyn DynCrane>,
     ) -> Self {
         let description = models[0].description();
         assert!(!description.has_force_states(), "states of forces have no lanes");

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::memory::{Visit, visit_count};
 use crate::{
-    dyn_crane::{DynDynamics, DynImplicit},
+    dyn_crane::DynCrane,
     force_states::ForceStates,
     loop_joints::{Loops, Open},
     stateful_force::StateAt,
@@ -14,7 +14,7 @@ use crate::{
 
 /// A crane, the references of its motions, and the number of evaluations of its accelerations.
 pub(super) struct Equations<'a> {
-    pub crane: &'a dyn DynDynamics,
+    pub crane: &'a dyn DynCrane,
     /// Number of coordinates.
     pub n: usize,
     /// The references of the integrated numbers.
@@ -33,7 +33,7 @@ pub(super) struct Equations<'a> {
 
 impl<'a> Equations<'a> {
     /// The equations of a crane.
-    pub fn new(crane: &'a dyn DynDynamics, references: References) -> Self {
+    pub fn new(crane: &'a dyn DynCrane, references: References) -> Self {
         let n = crane.size();
         let force_states = ForceStates::new(crane.description());
         let states = force_states.len();
@@ -124,7 +124,7 @@ impl<'a> Equations<'a> {
     /// take half as long. Of a crane without loops.
     pub fn shortfall(
         &mut self,
-        crane: &dyn DynImplicit,
+        crane: &dyn DynCrane,
         t: f64,
         motion: &[f64],
         rate: &[f64],

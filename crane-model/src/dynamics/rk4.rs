@@ -21,7 +21,7 @@ use nalgebra::SVector;
 
 use super::state::acceleration;
 pub use super::state::{NotFinite, State};
-use crate::{Dynamics, rt::lanes::f64x8};
+use crate::{CraneModel, rt::lanes::f64x8};
 
 /// End of the stability region on the imaginary axis, 2√2.
 pub const IMAGINARY_LIMIT: f64 = 2.0 * core::f64::consts::SQRT_2;
@@ -36,7 +36,12 @@ pub const STABILITY: [f64; 5] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0];
 ///
 /// # Errors
 /// An acceleration is not finite; `state` is unchanged.
-pub fn step<const N: usize, C: Dynamics<N>>(crane: &C, t: f64, h: f64, state: &mut State<N>) -> Result<(), NotFinite> {
+pub fn step<const N: usize, C: CraneModel<N>>(
+    crane: &C,
+    t: f64,
+    h: f64,
+    state: &mut State<N>,
+) -> Result<(), NotFinite> {
     step_with(crane, t, h, state, |_, _, _| SVector::<f64, 0>::zeros()).map(|_| ())
 }
 
@@ -45,7 +50,7 @@ pub fn step<const N: usize, C: Dynamics<N>>(crane: &C, t: f64, h: f64, state: &m
 ///
 /// # Errors
 /// An acceleration is not finite; `state` is unchanged.
-pub fn step_with<const N: usize, const M: usize, C: Dynamics<N>>(
+pub fn step_with<const N: usize, const M: usize, C: CraneModel<N>>(
     crane: &C,
     t: f64,
     h: f64,

@@ -36,8 +36,8 @@ use super::{
 };
 use crate::memory::Visit;
 use crate::{
-    Implicit,
-    dyn_crane::{DynImplicit, Instance},
+    CraneModel,
+    dyn_crane::{DynCrane, Instance},
 };
 
 /// Number of stages, and of evaluations per step: the slope at its end is the first of the next step.
@@ -104,13 +104,13 @@ const NODES: [f64; STAGES] = [
 ///
 /// # Errors
 /// An acceleration is not finite.
-pub fn step<const N: usize, C: Implicit<N>>(
+pub fn step<const N: usize, C: CraneModel<N>>(
     crane: &C,
     t: f64,
     h: f64,
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
-    let crane = Instance::<N, _>(crane);
+    let crane = Instance::<N, _>(crane.clone());
     let references = References::of(&crane);
     let mut equations = Equations::new(&crane, references);
     typed::step(&mut equations, t, h, state, &mut Stages::new(&crane, 2 * N))
@@ -121,7 +121,7 @@ pub struct Rosenbrock<'a>(Adaptive<'a, Stages<'a>>);
 
 impl<'a> Rosenbrock<'a> {
     /// Creates the motion, with the tolerance of the settings.
-    pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
+    pub fn new(crane: &'a dyn DynCrane, settings: &Settings) -> Self {
         let equations = Equations::new(crane, References::of(crane));
         let norm = Norm::with_efforts(crane, &equations.references, settings.tolerance);
         Self(Adaptive::new(Stages::new(crane, equations.len()), equations, norm))
@@ -142,7 +142,7 @@ pub(super) struct Stages<'a> {
 
 impl<'a> Stages<'a> {
     /// Storage for motions of this many numbers.
-    pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
+    pub fn new(crane: &'a dyn DynCrane, len: usize) -> Self {
         let zeros = || vec![0.0; len];
         let [u, places] = std::array::from_fn(|_| std::array::from_fn(|_| zeros()));
         Self { system: System::new(crane).with_steeper_bristles(), u, places, rhs: zeros() }

@@ -6,7 +6,7 @@ use super::{
     InitialState, Integration, Quantities, Run, Sample, Settings, Stepper, Stopped, Watch, course::follow_events,
     settings::divided, watch::Samples,
 };
-use crate::dyn_crane::{AnyCrane, CraneRef, DynCrane, DynDynamics, DynImplicit};
+use crate::dyn_crane::{AnyCrane, CraneRef, DynCrane};
 
 /// A run: the integration of Eq. (23) from a start.
 ///
@@ -26,23 +26,19 @@ pub struct Simulation<'a> {
 /// What moves the crane.
 enum Way<'a> {
     /// The method of the settings.
-    Method(CraneRef<'a, dyn DynImplicit + 'a>),
+    Method(CraneRef<'a>),
     /// The same, from event to event.
     Events(&'a dyn DynCrane, &'a Quantities),
     /// A given stepper.
-    Stepper(&'a mut dyn Stepper, CraneRef<'a, dyn DynDynamics + 'a>),
+    Stepper(&'a mut dyn Stepper, CraneRef<'a>),
 }
 
 /// # Panics
 /// Methods that run it do so if the start does not have as many numbers as the crane has coordinates.
 impl<'a> Simulation<'a> {
     /// A run of a crane by the method of the settings. Its events do not happen.
-    pub fn of<Size>(
-        crane: impl AnyCrane<'a, dyn DynImplicit + 'a, Size>,
-        start: impl Into<InitialState>,
-        settings: &'a Settings,
-    ) -> Self {
-        Self { way: Way::Method(crane.on_slices()), begin: 0.0, start: start.into(), settings }
+    pub fn of<Size>(crane: impl AnyCrane<'a, Size>, start: impl Into<InitialState>, settings: &'a Settings) -> Self {
+        Self { way: Way::Method(crane.for_dynamics()), begin: 0.0, start: start.into(), settings }
     }
 
     /// The same with the events of the crane; `quantities`: the results to which conditions refer. A result at the time of an event is that after
@@ -56,14 +52,14 @@ impl<'a> Simulation<'a> {
         Self { way: Way::Events(crane, quantities), begin: 0.0, start: start.into(), settings }
     }
 
-    /// A run with a stepper made for this crane and these settings: explicit ones only require [`DynDynamics`].
+    /// A run with a stepper made for this crane and these settings.
     pub fn by<Size>(
         stepper: &'a mut dyn Stepper,
-        crane: impl AnyCrane<'a, dyn DynDynamics + 'a, Size>,
+        crane: impl AnyCrane<'a, Size>,
         start: impl Into<InitialState>,
         settings: &'a Settings,
     ) -> Self {
-        Self { way: Way::Stepper(stepper, crane.on_slices()), begin: 0.0, start: start.into(), settings }
+        Self { way: Way::Stepper(stepper, crane.for_dynamics()), begin: 0.0, start: start.into(), settings }
     }
 
     /// From time `t`, s, over the settings' duration: the drives' motions continue from there. A run in pieces is reproduced exactly if it is

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::Dynamics;
+use crate::CraneModel;
 
 /// An acceleration is not finite: a body has no inertia, or the pose contains NaN. Or forces have states of their own, or
 /// joints close loops, which single steps do not support: an `Integration` does.
@@ -30,7 +30,7 @@ impl<const N: usize> State<N> {
 /// # Errors
 /// It is not finite.
 #[inline]
-pub fn acceleration<const N: usize, C: Dynamics<N>>(
+pub fn acceleration<const N: usize, C: CraneModel<N>>(
     crane: &C,
     t: f64,
     q: &SVector<f64, N>,

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::{Linearisable, NoModel, Output};
+use super::{NoModel, Output};
 use crate::{
     ColumnKind, CoordinateInfo, CoordinateRole, Description,
     dyn_crane::DynCrane,
@@ -92,8 +92,8 @@ pub(super) struct Effect {
 }
 
 /// What an input does at a state.
-pub(super) fn effect<C: Linearisable>(
-    crane: &C,
+pub(super) fn effect(
+    crane: &dyn DynCrane,
     moment: &StateAt<'_>,
     input: Input,
     space: &StateSpace,
@@ -211,8 +211,8 @@ fn slopes(value: f64, mut at: impl FnMut(f64) -> DVector<f64>) -> DVector<f64> {
 }
 
 /// What an input of the spec does, by central differences.
-fn of_spec<C: Linearisable>(
-    crane: &C,
+fn of_spec(
+    crane: &dyn DynCrane,
     moment: &StateAt<'_>,
     index: usize,
     space: &StateSpace,

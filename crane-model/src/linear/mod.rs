@@ -28,7 +28,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::{
     column::columns_of,
-    dyn_crane::{DynCrane, DynLineariseMotion, DynMotionDerivatives},
+    dyn_crane::DynCrane,
     force_states::{self, ForceStates, states_of_small_motions},
     modes::{DampedMode, NoModes, SmallMotions, StateSpace, eigenvalues, grows},
     results::{Column, quantities},
@@ -37,11 +37,6 @@ use crate::{
 
 /// Accelerations up to this, m/s² and rad/s², are those of a crane at rest.
 const REST: f64 = 1e-4;
-
-/// A crane whose linear models can be computed: a live one.
-pub trait Linearisable: DynCrane + DynLineariseMotion + DynMotionDerivatives {}
-
-impl<C: DynCrane + DynLineariseMotion + DynMotionDerivatives> Linearisable for C {}
 
 /// The state about which a crane is linearised.
 #[derive(Clone, Copy, Debug)]
@@ -137,8 +132,8 @@ impl From<NoModes> for NoModel {
 ///
 /// # Panics
 /// If `q` or `v` does not have as many numbers as the crane has coordinates.
-pub fn linear_model<C: Linearisable>(
-    crane: &C,
+pub fn linear_model(
+    crane: &dyn DynCrane,
     about: &About<'_>,
     inputs: &[Input],
     outputs: &[Output],
@@ -211,8 +206,8 @@ pub(super) struct Directions {
 }
 
 /// A linear model at given states of forces.
-fn part<C: Linearisable>(
-    crane: &C,
+fn part(
+    crane: &dyn DynCrane,
     moment: &StateAt<'_>,
     steady: bool,
     inputs: &[Input],

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::{Directions, Linearisable, differences::State};
+use super::{Directions, differences::State};
 use crate::{
     dyn_crane::DynCrane,
     results::{Column, quantities, quantities_with},
@@ -47,8 +47,8 @@ fn known(crane: &dyn DynCrane, output: &Output) -> Option<Known> {
 }
 
 /// C: outputs by states.
-pub(super) fn rows<C: Linearisable>(
-    crane: &C,
+pub(super) fn rows(
+    crane: &dyn DynCrane,
     moment: &StateAt<'_>,
     outputs: &[Output],
     directions: &Directions,

@@ -3,13 +3,13 @@
 use nalgebra::{DMatrix, Vector3};
 
 use super::Loops;
-use crate::dyn_crane::DynModel;
+use crate::dyn_crane::DynCrane;
 
 /// `Σ λ_i ∂²φ_i/∂q²`, n × n: the geometric stiffness of loop joints that transmit λ.
 ///
 /// `J̇ q̇` is the quadratic form of the second derivatives, so that its values for pairs of coordinates give them exactly. Cranes with
 /// derivatives of J need no pairs.
-pub(crate) fn geometric_stiffness(crane: &(impl DynModel + ?Sized), q: &[f64], multipliers: &[f64]) -> DMatrix<f64> {
+pub(crate) fn geometric_stiffness(crane: &dyn DynCrane, q: &[f64], multipliers: &[f64]) -> DMatrix<f64> {
     let n = q.len();
     let mut matrix = DMatrix::zeros(n, n);
     if crane.loop_stiffness(q, multipliers, matrix.as_mut_slice()) {
@@ -45,7 +45,7 @@ pub(crate) fn geometric_stiffness(crane: &(impl DynModel + ?Sized), q: &[f64], m
 /// Motions that leave the loops closed: the coordinates that are free in them, and a basis Z with a column for each, `J Z = 0`, over all
 /// coordinates. `preferred`: how good it is to determine a coordinate by the others.
 pub(crate) fn closed_motions(
-    crane: &(impl DynModel + ?Sized),
+    crane: &dyn DynCrane,
     q: &[f64],
     preferred: impl Fn(usize) -> f64,
 ) -> (Vec<usize>, DMatrix<f64>) {

@@ -44,11 +44,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use crate::{
-    CoordinateKind, Count, LoopEquationInfo, LoopJointInfo,
-    dyn_crane::{DynDynamics, DynModel},
-    interleaved,
-};
+use crate::{CoordinateKind, Count, LoopEquationInfo, LoopJointInfo, dyn_crane::DynCrane, interleaved};
 use independence::Independence;
 use of_crane::OfCrane;
 use profile::Profile;
@@ -113,7 +109,7 @@ pub(crate) struct Loops {
     columns: Vec<f64>,
     /// The pose at which the loops were last opened, with the columns of all equations; NaN if others have been written since.
     opened: Vec<f64>,
-    /// Accelerations of the open chain and what closes its loops, as [`loop_dynamics`](crate::Dynamics::loop_dynamics) orders them.
+    /// Accelerations of the open chain and what closes its loops, as [`loop_dynamics`](crate::CraneModel::loop_dynamics) orders them.
     dynamics: Vec<f64>,
     /// `J M⁻¹ Jᵀ` of `rows`.
     coupled: Profile,
@@ -132,7 +128,7 @@ pub(crate) struct Loops {
 
 impl Loops {
     /// Storage for the loop joints of a crane.
-    pub fn new(crane: &(impl DynModel + ?Sized)) -> Self {
+    pub fn new(crane: &dyn DynCrane) -> Self {
         let (n, cranes) = (crane.size(), crane.cranes());
         // The row of a coupling has no length of its own to compare with others, even if it transmits a torque.
         let moments = |joint: &LoopJointInfo| {
@@ -221,7 +217,7 @@ impl Loops {
     }
 
     /// φ, φ̇ and J̇ q̇ of every equation, and J.
-    pub fn evaluate(&mut self, crane: &(impl DynModel + ?Sized), q: &[f64], v: &[f64]) {
+    pub fn evaluate(&mut self, crane: &dyn DynCrane, q: &[f64], v: &[f64]) {
         crane.loop_states(q, v, &mut self.states);
         crane.loop_jacobians(q, &mut self.jacobian);
         self.find_runs();
@@ -388,7 +384,7 @@ impl Loops {
     }
 
     /// Writes the accelerations of the open chain, and prepares to [`close`](Self::close) its loops.
-    pub fn open(&mut self, crane: &dyn DynDynamics, t: f64, (q, v): (&[f64], &[f64]), accelerations: &mut [f64]) {
+    pub fn open(&mut self, crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), accelerations: &mut [f64]) {
         if self.is_empty() {
             crane.forward_dynamics(t, q, v, accelerations);
             return;
@@ -449,7 +445,7 @@ impl Loops {
     ///
     /// # Errors
     /// A loop does not close: one of its equations that depend on others has a gap, or the pose is too far away.
-    pub fn project(&mut self, crane: &dyn DynDynamics, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
+    pub fn project(&mut self, crane: &dyn DynCrane, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
         if self.is_empty() {
             return Ok(());
         }
@@ -506,12 +502,7 @@ impl Loops {
     ///
     /// # Errors
     /// It does not close; the pose is the nearest one that was found.
-    pub fn assemble(
-        &mut self,
-        crane: &(impl DynModel + ?Sized),
-        q: &mut [f64],
-        solve: SolveAt<'_>,
-    ) -> Result<(), Open> {
+    pub fn assemble(&mut self, crane: &dyn DynCrane, q: &mut [f64], solve: SolveAt<'_>) -> Result<(), Open> {
         if self.is_empty() {
             return Ok(());
         }
@@ -562,7 +553,7 @@ fn equations(rows: &[usize], cranes: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Shortens a step so that no coordinate rotates by more than [`GREATEST_ROTATION`].
-fn limit(step: &mut [f64], crane: &(impl DynModel + ?Sized)) {
+fn limit(step: &mut [f64], crane: &dyn DynCrane) {
     let coordinates = &crane.description().coordinates;
     let rotations = coordinates.iter().zip(&*step).filter(|(info, _)| info.kind == CoordinateKind::Rotation);
     let greatest = rotations.map(|(_, step)| step.abs()).fold(0.0, f64::max);

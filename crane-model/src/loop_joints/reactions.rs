@@ -6,11 +6,7 @@ use super::{
     dot,
     drives::{fighting_valves, prescribed_too_much},
 };
-use crate::{
-    LoopEquationInfo, LoopJointInfo, Wrench,
-    dyn_crane::{DynDynamics, DynInternalForces, DynModel},
-    wrench,
-};
+use crate::{LoopEquationInfo, LoopJointInfo, Wrench, dyn_crane::DynCrane, wrench};
 
 /// A loop that is open at a pose, or opens.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +25,7 @@ pub struct Gap {
 
 impl Gap {
     /// Of an equation of a crane.
-    pub(crate) fn of(crane: &(impl DynModel + ?Sized), Open { equation, gap, is_rate }: Open) -> Self {
+    pub(crate) fn of(crane: &dyn DynCrane, Open { equation, gap, is_rate }: Open) -> Self {
         let (joint, info) = equation_of(crane.loop_joints(), equation);
         let is_coupling = joint.is_coupling();
         // That of an axis is a sine.
@@ -73,7 +69,7 @@ fn equation_of(joints: &[LoopJointInfo], mut index: usize) -> (&LoopJointInfo, &
 }
 
 /// The loop that is open most at a pose, if any is open by more than a thousandth of a millimetre.
-pub fn gap_at(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Option<Gap> {
+pub fn gap_at(crane: &dyn DynCrane, q: &[f64]) -> Option<Gap> {
     let mut loops = Loops::new(crane);
     if loops.is_empty() {
         return None;
@@ -84,7 +80,7 @@ pub fn gap_at(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Option<Gap> {
 }
 
 /// Indices of the equations that are independent at a pose, among those of all joints.
-pub fn independent(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<usize> {
+pub fn independent(crane: &dyn DynCrane, q: &[f64]) -> Vec<usize> {
     let mut loops = Loops::new(crane);
     loops.evaluate(crane, q, &vec![0.0; q.len()]);
     loops.choose();
@@ -92,7 +88,7 @@ pub fn independent(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<usize> {
 }
 
 /// The equations whose forces and moments cannot be determined at a pose, because they depend on others: `pin P along z`.
-pub fn undetermined(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> {
+pub fn undetermined(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
     let mut loops = Loops::new(crane);
     loops.evaluate(crane, q, &vec![0.0; q.len()]);
     loops.choose();
@@ -175,15 +171,15 @@ impl std::fmt::Display for Caution {
 }
 
 /// Looks at the loops of a crane, pose by pose.
-pub struct Watch<'a, M: DynModel + ?Sized> {
-    crane: &'a M,
+pub struct Watch<'a> {
+    crane: &'a dyn DynCrane,
     loops: Loops,
     dead_centres: DeadCentres,
 }
 
-impl<'a, M: DynModel + ?Sized> Watch<'a, M> {
+impl<'a> Watch<'a> {
     /// Of a crane.
-    pub fn new(crane: &'a M) -> Self {
+    pub fn new(crane: &'a dyn DynCrane) -> Self {
         Self { crane, loops: Loops::new(crane), dead_centres: DeadCentres::new() }
     }
 
@@ -222,12 +218,12 @@ impl<'a, M: DynModel + ?Sized> Watch<'a, M> {
 }
 
 /// Cautions about the loops at a pose.
-pub fn cautions(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> {
+pub fn cautions(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
     Watch::new(crane).cautions(q).iter().map(Caution::to_string).collect()
 }
 
 /// The rigid drives that hold a loop, if it is as near to a dead centre of them as it is where they moved it beyond its reach.
-pub(crate) fn drives_beyond_reach(crane: &(impl DynModel + ?Sized), q: &[f64]) -> Vec<String> {
+pub(crate) fn drives_beyond_reach(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
     /// A loop that opens within a step is not yet in line, rad: 10°.
     const NEAR: f64 = 0.17;
     let mut loops = Loops::new(crane);
@@ -241,7 +237,7 @@ pub(crate) fn drives_beyond_reach(crane: &(impl DynModel + ?Sized), q: &[f64]) -
 
 /// Adds what loop joints transmit at every cut; only those that hold to the world if `to_world`.
 pub(crate) fn add_to_wrenches(
-    crane: &(impl DynInternalForces + ?Sized),
+    crane: &dyn DynCrane,
     q: &[f64],
     multipliers: &[f64],
     to_world: bool,
@@ -269,12 +265,7 @@ pub(crate) fn add_to_wrenches(
 /// ```text
 /// Δτ = A (q̈ − q̈_open) + Jᵀ λ
 /// ```
-pub(crate) fn on_rigid_drives(
-    crane: &(impl DynDynamics + ?Sized),
-    q: &[f64],
-    loops: &Loops,
-    change: &[f64],
-) -> Vec<(usize, f64)> {
+pub(crate) fn on_rigid_drives(crane: &dyn DynCrane, q: &[f64], loops: &Loops, change: &[f64]) -> Vec<(usize, f64)> {
     let prescribed = &loops.prescribed;
     if prescribed.is_empty() || loops.is_empty() {
         return Vec::new();

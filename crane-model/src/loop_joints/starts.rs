@@ -10,7 +10,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::{Gap, Loops, Open};
-use crate::dyn_crane::DynDynamics;
+use crate::dyn_crane::DynCrane;
 
 /// Gaps of a whole state up to this share of the loop's size, and rates of gaps up to this share of what is in them, are those of
 /// numbers that were written and read: the state is moved onto the loops.
@@ -32,7 +32,7 @@ pub struct Given {
 /// # Errors
 /// The joint that is open most, or opens fastest: what is given leaves no way to close it.
 pub(crate) fn close_start(
-    crane: &dyn DynDynamics,
+    crane: &dyn DynCrane,
     t: f64,
     (q, v): (&mut [f64], &mut [f64]),
     given: &Given,
@@ -65,7 +65,7 @@ pub(crate) fn close_start(
 ///
 /// # Errors
 /// The joint that is open most, or opens fastest.
-pub(crate) fn close_state(crane: &dyn DynDynamics, t: f64, (q, v): (&mut [f64], &mut [f64])) -> Result<(), Gap> {
+pub(crate) fn close_state(crane: &dyn DynCrane, t: f64, (q, v): (&mut [f64], &mut [f64])) -> Result<(), Gap> {
     crane.prescribe(t, q, v);
     let mut loops = Loops::new(crane);
     if loops.is_empty() {
@@ -79,7 +79,7 @@ pub(crate) fn close_state(crane: &dyn DynDynamics, t: f64, (q, v): (&mut [f64], 
 
 impl Loops {
     /// Of a crane some coordinates of which do not move, besides those of rigid drives.
-    fn holding(crane: &dyn DynDynamics, held: &[usize]) -> Self {
+    fn holding(crane: &dyn DynCrane, held: &[usize]) -> Self {
         let mut loops = Self::new(crane);
         loops.prescribed.extend(held);
         loops.prescribed.sort_unstable();
@@ -88,7 +88,7 @@ impl Loops {
     }
 
     /// The widest gap of those that are too wide for the size of their loop, the longest way that a rotation of 1 rad moves its joint, as last evaluated.
-    fn open_beyond(&self, crane: &dyn DynDynamics) -> Option<Open> {
+    fn open_beyond(&self, crane: &dyn DynCrane) -> Option<Open> {
         let mut first = 0;
         let mut worst: Option<Open> = None;
         for joint in crane.loop_joints() {
@@ -125,14 +125,14 @@ impl Loops {
 
 /// The mass matrix of the coordinates that move, factorised at a pose.
 struct HeldMass<'a> {
-    crane: &'a dyn DynDynamics,
+    crane: &'a dyn DynCrane,
     held: Vec<usize>,
     pose: Vec<f64>,
     factors: Option<Cholesky<f64, Dyn>>,
 }
 
 impl<'a> HeldMass<'a> {
-    fn new(crane: &'a dyn DynDynamics, held: &[usize]) -> Self {
+    fn new(crane: &'a dyn DynCrane, held: &[usize]) -> Self {
         Self { crane, held: held.to_vec(), pose: Vec::new(), factors: None }
     }
 

@@ -5,7 +5,7 @@ use nalgebra::{ComplexField, DMatrix, DVector, DVectorView};
 use super::NoModes;
 use crate::{
     CoordinateRole, Linearisation,
-    dyn_crane::{DynCrane, DynLinearise, DynLineariseMotion},
+    dyn_crane::DynCrane,
     loop_joints::{closed_motions, geometric_stiffness, required},
     model::state_blocks,
 };
@@ -44,7 +44,7 @@ impl<const N: usize> From<&Linearisation<N>> for SmallMotions {
 
 impl SmallMotions {
     /// About the pose `q` of a crane of any size.
-    pub fn of(crane: &(impl DynLinearise + ?Sized), q: &[f64]) -> Self {
+    pub fn of(crane: &dyn DynCrane, q: &[f64]) -> Self {
         let zeros = || DMatrix::zeros(q.len(), q.len());
         let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
         crane.linearise(q, mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());
@@ -53,11 +53,9 @@ impl SmallMotions {
     }
 
     /// About a motion of a crane of any size: pose, rates and accelerations at time t.
-    pub fn about_motion(crane: &(impl DynLineariseMotion + ?Sized), t: f64, motion: [&[f64]; 3]) -> Self {
+    pub fn about_motion(crane: &dyn DynCrane, t: f64, motion: [&[f64]; 3]) -> Self {
         let size = crane.size();
-        let zeros = || DMatrix::zeros(size, size);
-        let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
-        crane.linearise_motion(t, motion, mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());
+        let [mass, stiffness, damping] = crane.linearise_motion(t, motion);
         let all = Self { mass, stiffness, damping, unknowns: (0..size).collect(), size, basis: None };
         all.without(&crane.description().prescribed())
     }
@@ -177,4 +175,26 @@ pub(crate) fn independent_motions(crane: &dyn DynCrane, q: &[f64]) -> (Vec<usize
 /// `(X − Xᵀ)/2`
 fn skew(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     (matrix - matrix.transpose()) * 0.5
+}
+
+impl dyn DynCrane + '_ {
+    /// `A`, `K = ∂(A a − e − f)/∂q` and `D = −∂(e + f)/∂v` at time t, pose q, rates v and accelerations a:
+    /// `A δq̈ + D δq̇ + K δq = 0`. K and D contain centrifugal and gyroscopic terms and need not be symmetric. Coordinates that
+    /// rigid drives prescribe oscillate separately at 1 rad/s, as in [`linearise`](DynCrane::linearise). NaN for a crane without derivatives of the dynamics.
+    pub fn linearise_motion(&self, t: f64, [q, v, a]: [&[f64]; 3]) -> [DMatrix<f64>; 3] {
+        let size = self.size();
+        let mut mass = self.mass_matrix_at(q);
+        let mut rows = vec![0.0; 2 * size * size];
+        self.dynamic_residual_derivatives(t, q, v, a, &mut rows);
+        let (of_pose, of_rates) = rows.split_at(size * size);
+        let [mut stiffness, mut damping] = [of_pose, of_rates].map(|rows| DMatrix::from_row_slice(size, size, rows));
+        for j in self.description().prescribed() {
+            for (matrix, diagonal) in [(&mut mass, 1.0), (&mut stiffness, 1.0), (&mut damping, 0.0)] {
+                matrix.row_mut(j).fill(0.0);
+                matrix.column_mut(j).fill(0.0);
+                matrix[(j, j)] = diagonal;
+            }
+        }
+        [mass, stiffness, damping]
+    }
 }

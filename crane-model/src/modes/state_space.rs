@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::{DampedMode, NoModes, SmallMotions, damped::eigenpairs};
 use crate::{
-    dyn_crane::{DynCrane, DynLineariseMotion, DynModel},
+    dyn_crane::DynCrane,
     force_states::ForceStates,
     model::state_blocks,
     stateful_force::{StateAt, StatefulForce},
@@ -25,7 +25,7 @@ impl StateSpace {
     /// # Errors
     /// The mass matrix is not positive definite.
     pub(crate) fn at(
-        crane: &dyn DynModel,
+        crane: &dyn DynCrane,
         moment: &StateAt<'_>,
         mut motions: SmallMotions,
         forces: &mut ForceStates,
@@ -69,8 +69,8 @@ impl StateSpace {
     ///
     /// # Errors
     /// The mass matrix is not positive definite.
-    pub(crate) fn about<C: DynCrane + DynLineariseMotion>(
-        crane: &C,
+    pub(crate) fn about(
+        crane: &dyn DynCrane,
         moment: &StateAt<'_>,
         a: &[f64],
         forces: &mut ForceStates,

@@ -4,7 +4,7 @@ use std::{error::Error, fmt};
 
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
-use crate::dyn_crane::DynLineariseMotion;
+use crate::dyn_crane::DynCrane;
 use crate::least_squares::LeastSquares;
 
 /// Maximum Newton steps at each fraction of the rates.
@@ -77,12 +77,7 @@ impl Error for NotSteady {}
 ///
 /// # Errors
 /// No pose is found at the full rates.
-pub fn steady(
-    crane: &(impl DynLineariseMotion + ?Sized),
-    t: f64,
-    start: &[f64],
-    held: &[Held],
-) -> Result<Steady, NotSteady> {
+pub fn steady(crane: &dyn DynCrane, t: f64, start: &[f64], held: &[Held]) -> Result<Steady, NotSteady> {
     let search = Search::new(crane, t, start, held);
     let (mut reached, mut part) = (0.0, 1.0);
     let mut q = search.start.clone();
@@ -108,8 +103,8 @@ pub fn steady(
 }
 
 /// The equations of a steady motion.
-struct Search<'a, C: ?Sized> {
-    crane: &'a C,
+struct Search<'a> {
+    crane: &'a dyn DynCrane,
     t: f64,
     start: DVector<f64>,
     /// All rates.
@@ -120,8 +115,8 @@ struct Search<'a, C: ?Sized> {
     free: Vec<usize>,
 }
 
-impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
-    fn new(crane: &'a C, t: f64, start: &[f64], held: &[Held]) -> Self {
+impl<'a> Search<'a> {
+    fn new(crane: &'a dyn DynCrane, t: f64, start: &[f64], held: &[Held]) -> Self {
         let description = crane.description();
         let (mut start, mut rates) = (DVector::from_column_slice(start), DVector::zeros(start.len()));
         let mut motions = vec![[0.0; 2]; description.drives.len()];
@@ -166,16 +161,7 @@ impl<'a, C: DynLineariseMotion + ?Sized> Search<'a, C> {
 
     fn stiffness(&self, q: &DVector<f64>, v: &DVector<f64>) -> DMatrix<f64> {
         let n = q.len();
-        let zeros = || DMatrix::zeros(n, n);
-        let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
-        let motion = [q.as_slice(), v.as_slice(), &vec![0.0; n]];
-        self.crane.linearise_motion(
-            self.t,
-            motion,
-            mass.as_mut_slice(),
-            stiffness.as_mut_slice(),
-            damping.as_mut_slice(),
-        );
+        let [_, stiffness, _] = self.crane.linearise_motion(self.t, [q.as_slice(), v.as_slice(), &vec![0.0; n]]);
         stiffness.select_rows(&self.free).select_columns(&self.free)
     }
 

@@ -5,7 +5,7 @@ use crane_quantities::{ColumnKind, DisplayUnit, PUMP};
 use super::{Extremes, Table, column_name};
 use crate::{
     CoordinateRole, CylinderInfo, Description, DriveInfo, Text,
-    dyn_crane::{DynCrane, DynImplicit},
+    dyn_crane::DynCrane,
     hydraulics::{CylinderState, cylinders_at},
 };
 
@@ -45,7 +45,7 @@ pub(super) fn pumps(
     if cranes == 0 {
         return Vec::new();
     }
-    let stiffness = (crane as &dyn DynImplicit).drive_stiffness(q);
+    let stiffness = (crane as &dyn DynCrane).drive_stiffness(q);
     let demand = |(info, state): (&CylinderInfo, &CylinderState)| {
         let is_rigid =
             description.coordinates[description.drives[info.drive].coordinate].role == CoordinateRole::Prescribed;
@@ -97,7 +97,7 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
         return Vec::new();
     }
     let rest = vec![0.0; q.len()];
-    let stiffness = (crane as &dyn DynImplicit).drive_stiffness(q);
+    let stiffness = (crane as &dyn DynCrane).drive_stiffness(q);
     let states = cylinders_at(crane, q, &rest, &crane.drive_efforts_at_rest(q));
     let mut found = Vec::new();
     for (info, state) in description.cylinders.iter().zip(&states) {

@@ -13,7 +13,7 @@ use std::{
 use super::{self as runs, Failed, Start};
 use crate::{
     ParameterError,
-    dyn_crane::{DynCrane, DynModel},
+    dyn_crane::DynCrane,
     dynamics::{self, InitialState, Run, Sample, Settings, Simulation, Watch, ensemble::Member},
     interleaved,
     results::{self, FleetRecording, Peaks, Recording, Table, cautions},
@@ -375,7 +375,7 @@ fn as_fleet(
 ) -> Vec<Outcome> {
     let ready: Vec<_> = rows.iter().map(|row| if off() { Err(Reason::Cancelled) } else { ready(crane, row) }).collect();
     let members: Vec<_> = ready.iter().flatten().map(|(crane, start)| (crane.as_ref(), start.state())).collect();
-    let models: Vec<&dyn DynModel> = members.iter().map(|(crane, _)| *crane as &dyn DynModel).collect();
+    let models: Vec<&dyn DynCrane> = members.iter().map(|(crane, _)| *crane as &dyn DynCrane).collect();
     let fleet = if is_worth_a_fleet(members.len(), cranes) { crane.fleet(&models) } else { None };
     let together = fleet.and_then(|fleet| {
         let recording = FleetRecording::new(fleet.as_ref(), crane);

@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::{
     CoordinateKind, CoordinateRole, Description,
-    dyn_crane::DynStatics,
+    dyn_crane::DynCrane,
     loop_joints::{Loops, geometric_stiffness},
 };
 
@@ -57,7 +57,7 @@ impl Closed {
     }
 
     /// Moves a pose onto the loops; returns whether they close.
-    pub fn close(&self, crane: &dyn DynStatics, q: &mut [f64]) -> bool {
+    pub fn close(&self, crane: &dyn DynCrane, q: &mut [f64]) -> bool {
         let roles: Vec<CoordinateRole> = crane.description().coordinates.iter().map(|info| info.role).collect();
         let mut soften = |_: &[f64], r: &[f64], x: &mut [f64]| {
             for (i, (x, r)) in x.iter_mut().zip(r).enumerate() {
@@ -67,7 +67,7 @@ impl Closed {
         Loops::new(crane).assemble(crane, q, &mut soften).is_ok()
     }
 
-    fn rows(&self, crane: &dyn DynStatics, q: &[f64]) -> Rows {
+    fn rows(&self, crane: &dyn DynCrane, q: &[f64]) -> Rows {
         let n = q.len();
         let mut loops = Loops::new(crane);
         loops.evaluate(crane, q, &vec![0.0; n]);
@@ -83,7 +83,7 @@ impl Closed {
     }
 
     /// The residual of motions that leave the loops closed, `D^½ Π D^-½ r`.
-    pub fn residual(&self, crane: &dyn DynStatics, q: &[f64], residual: &DVector<f64>) -> DVector<f64> {
+    pub fn residual(&self, crane: &dyn DynCrane, q: &[f64], residual: &DVector<f64>) -> DVector<f64> {
         let rows = self.rows(crane, q);
         self.project(&rows, residual).component_mul(&self.scale)
     }
@@ -97,7 +97,7 @@ impl Closed {
     /// `D^½ K̃ D^½`, from the residual and the stiffness of the open chain, symmetric up to rounding if this one is.
     pub fn stiffness(
         &self,
-        crane: &dyn DynStatics,
+        crane: &dyn DynCrane,
         q: &[f64],
         residual: &DVector<f64>,
         stiffness: &DMatrix<f64>,
@@ -121,7 +121,7 @@ impl Closed {
     /// The derivative is exact where r is in equilibrium.
     pub fn partly_loaded(
         &self,
-        crane: &dyn DynStatics,
+        crane: &dyn DynCrane,
         q: &[f64],
         force: &DVector<f64>,
         by_pose: &DMatrix<f64>,
@@ -140,7 +140,7 @@ impl Closed {
     /// `D^-½ (K + Σ λ_i ∂²φ_i/∂q²) D^-½`, where λ balances the residual.
     fn lagrangian(
         &self,
-        crane: &dyn DynStatics,
+        crane: &dyn DynCrane,
         q: &[f64],
         rows: &Rows,
         residual: &DVector<f64>,

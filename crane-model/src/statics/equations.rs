@@ -3,11 +3,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::closed::Closed;
-use crate::{CoordinateRole, dyn_crane::DynStatics, feet::Feet};
+use crate::{CoordinateRole, dyn_crane::DynCrane, feet::Feet};
 
 /// The equations that a pose at rest satisfies, with loads and winches as at a time and the drives at given positions.
 pub(super) struct Equations<'a> {
-    pub crane: &'a dyn DynStatics,
+    pub crane: &'a dyn DynCrane,
     /// Time of loads and winches, s.
     pub t: f64,
     /// Positions of the drives, by coordinate.
@@ -18,12 +18,12 @@ pub(super) struct Equations<'a> {
 
 impl<'a> Equations<'a> {
     /// With the drives where their motions are at time `t`, s.
-    pub(super) fn at(crane: &'a dyn DynStatics, t: f64) -> Self {
+    pub(super) fn at(crane: &'a dyn DynCrane, t: f64) -> Self {
         Self { crane, t, positions: crane.drive_positions_at(t), closed: None }
     }
 
     /// With the drives at `positions`, one per drive.
-    pub(super) fn holding(crane: &'a dyn DynStatics, t: f64, positions: &[f64]) -> Self {
+    pub(super) fn holding(crane: &'a dyn DynCrane, t: f64, positions: &[f64]) -> Self {
         Self { crane, t, positions: crane.description().by_coordinate(positions), closed: None }
     }
 

@@ -4,7 +4,7 @@ use nalgebra::{SVector, Vector3};
 
 use crate::{
     Count, CraneModel, Tension,
-    dyn_crane::{DynModel, Instance},
+    dyn_crane::{DynCrane, Instance},
 };
 
 /// A guess within this distance of the drive's position is equal to it, m or rad: above rounding, below the differences that matter in a
@@ -14,11 +14,11 @@ const ROUNDING: f64 = 1e-9;
 /// The description's guess, and what follows from the parameters of the crane: drives are where their motions begin, and coordinates that follow
 /// others where their couplings are without force.
 pub fn guess<const N: usize, C: CraneModel<N>>(crane: &C) -> SVector<f64, N> {
-    SVector::from_vec(guess_dyn(&Instance::<N, _>(crane)))
+    SVector::from_vec(guess_dyn(&Instance::<N, _>(crane.clone())))
 }
 
 /// As [`guess`], of a crane of any size.
-pub fn guess_dyn(crane: &(impl DynModel + ?Sized)) -> Vec<f64> {
+pub fn guess_dyn(crane: &dyn DynCrane) -> Vec<f64> {
     let mut motions = vec![[0.0; 2]; crane.description().drives.len()];
     crane.drive_motions(0.0, &mut motions);
     let mut q = guess_with(crane, motions.iter().map(|[position, _]| *position));
@@ -29,7 +29,7 @@ pub fn guess_dyn(crane: &(impl DynModel + ?Sized)) -> Vec<f64> {
 
 /// The guess with the drives at given positions, one per drive, instead of those of their motions: driven coordinates that the description
 /// has where their drives begin, and coordinates that follow them by couplings, move with them.
-pub(super) fn guess_with(crane: &(impl DynModel + ?Sized), positions: impl Iterator<Item = f64>) -> Vec<f64> {
+pub(super) fn guess_with(crane: &dyn DynCrane, positions: impl Iterator<Item = f64>) -> Vec<f64> {
     let description = crane.description();
     let mut motions = vec![[0.0; 2]; description.drives.len()];
     crane.drive_motions(0.0, &mut motions);
@@ -47,7 +47,7 @@ pub(super) fn guess_with(crane: &(impl DynModel + ?Sized), positions: impl Itera
 }
 
 /// Places coordinates that follow others where their couplings are without force.
-fn follow_couplings(crane: &(impl DynModel + ?Sized), known: &mut [Option<f64>]) {
+fn follow_couplings(crane: &dyn DynCrane, known: &mut [Option<f64>]) {
     let couplings = couplings(crane);
     // A coordinate that follows one that follows another is known one pass later.
     for _ in &couplings {
@@ -66,7 +66,7 @@ fn follow_couplings(crane: &(impl DynModel + ?Sized), known: &mut [Option<f64>])
 }
 
 /// The couplings `q_j − r q_i = c` that have a stiffness or hold exactly: c, and the rows of their coefficients.
-fn couplings(crane: &(impl DynModel + ?Sized)) -> Vec<(f64, Vec<f64>)> {
+fn couplings(crane: &dyn DynCrane) -> Vec<(f64, Vec<f64>)> {
     let (description, n) = (crane.description(), crane.size());
     let (count, equations) = (description.connectors.len(), crane.count(Count::LoopEquations));
     let zero = vec![0.0; n];

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     CoordinateKind,
-    dyn_crane::{AnyCrane, CraneRef, DynStatics},
+    dyn_crane::{AnyCrane, CraneRef},
     feet::Feet,
 };
 
@@ -24,7 +24,7 @@ use crate::{
 /// | [`settings`](Self::settings): when it stops | [`Settings::default`] |
 #[must_use = "it is solved by `solve`"]
 pub struct Problem<'a> {
-    crane: CraneRef<'a, dyn DynStatics + 'a>,
+    crane: CraneRef<'a>,
     t: f64,
     positions: Option<&'a [f64]>,
     from: Option<&'a [f64]>,
@@ -33,8 +33,8 @@ pub struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     /// The crane with its drives, loads and winches where they are at t = 0.
-    pub fn of<Size>(crane: impl AnyCrane<'a, dyn DynStatics + 'a, Size>) -> Self {
-        Self { crane: crane.on_slices(), t: 0.0, positions: None, from: None, settings: Settings::default() }
+    pub fn of<Size>(crane: impl AnyCrane<'a, Size>) -> Self {
+        Self { crane: crane.for_statics(), t: 0.0, positions: None, from: None, settings: Settings::default() }
     }
 
     /// With the drives, loads and winches where they are at time `t`, s: where the crane would rest if its motion stopped.

@@ -1,8 +1,6 @@
 //! A crane without coordinates: nothing moves.
 
-use crane_model::{
-    CraneModel, Description, Dynamics, InternalForces, Linearisation, Linearise, ParameterError, Statics, Wrench,
-};
+use crane_model::{CraneModel, Description, Linearisation, ParameterError, Wrench};
 use nalgebra::{Matrix4, SMatrix, SVector};
 
 use super::description;
@@ -14,6 +12,12 @@ static DESCRIPTION: Description = description("fixed", &[], &[]);
 pub struct Fixed;
 
 impl CraneModel<0> for Fixed {
+    crate::common::implicit::by_hand! { 0 }
+
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        out.fill([0.0; 2]);
+    }
+
     fn description(&self) -> &Description {
         &DESCRIPTION
     }
@@ -33,9 +37,7 @@ impl CraneModel<0> for Fixed {
     fn gravity_energy(&self, _: &SVector<f64, 0>) -> f64 {
         0.0
     }
-}
 
-impl Dynamics<0> for Fixed {
     fn mass_matrix(&self, _: &SVector<f64, 0>, _: &mut SMatrix<f64, 0, 0>) {}
 
     fn bias(&self, _: &SVector<f64, 0>, _: &SVector<f64, 0>) -> SVector<f64, 0> {
@@ -45,23 +47,17 @@ impl Dynamics<0> for Fixed {
     fn kinetic_energy(&self, _: &SVector<f64, 0>, _: &SVector<f64, 0>) -> f64 {
         0.0
     }
-}
 
-impl Statics<0> for Fixed {
     fn static_residual(&self, _: f64, _: &SVector<f64, 0>, _: &SVector<f64, 0>) -> SVector<f64, 0> {
         SVector::zeros()
     }
 
     fn tangent_stiffness(&self, _: f64, _: &SVector<f64, 0>, _: &SVector<f64, 0>, _: &mut SMatrix<f64, 0, 0>) {}
-}
 
-impl Linearise<0> for Fixed {
     fn linearise(&self, _: &SVector<f64, 0>) -> Linearisation<0> {
         Linearisation { mass: SMatrix::zeros(), stiffness: SMatrix::zeros(), damping: SMatrix::zeros() }
     }
-}
 
-impl InternalForces<0> for Fixed {
     fn internal_forces(&self, _: f64, _: &SVector<f64, 0>, _: &SVector<f64, 0>, _: &SVector<f64, 0>, _: &mut [Wrench]) {
     }
 }

@@ -1,12 +1,10 @@
-//! Implicit systems of cranes written by hand, by dense factors; lanes of eight cranes, evaluated one after the other.
+//! What cranes written by hand need besides their equations: implicit systems by dense factors, and lanes of eight cranes, one after the other.
 
-use crane_model::{Dynamics, Ensemble, Implicit, OneByOne};
+use crane_model::CraneModel;
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
-use super::{DoublePendulum, Fixed, Lift, Sledge};
-
 /// A at a pose.
-pub fn mass_matrix<const N: usize, C: Dynamics<N>>(crane: &C, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
+pub fn mass_matrix<const N: usize, C: CraneModel<N>>(crane: &C, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
     let mut mass = SMatrix::zeros();
     crane.mass_matrix(q, &mut mass);
     mass
@@ -16,7 +14,7 @@ pub fn mass_matrix<const N: usize, C: Dynamics<N>>(crane: &C, q: &SVector<f64, N
 pub type Factors<const N: usize> = Option<Cholesky<f64, Const<N>>>;
 
 /// Factors of `A + D̂` for added inertias of single coordinates.
-pub fn factorise<const N: usize, C: Dynamics<N>>(
+pub fn factorise<const N: usize, C: CraneModel<N>>(
     crane: &C,
     q: &SVector<f64, N>,
     added_inertia: &SVector<f64, N>,
@@ -29,41 +27,30 @@ pub fn solve<const N: usize>(factors: &Factors<N>, r: &SVector<f64, N>) -> SVect
     factors.as_ref().map_or(SVector::repeat(f64::NAN), |factors| factors.solve(r))
 }
 
-macro_rules! implicit {
-    ($crane:ty, $size:literal, $stiffness_and_damping:expr) => {
-        impl Implicit<$size> for $crane {
-            type Factors = Factors<$size>;
+/// What a crane written by hand needs besides its equations, in its `impl CraneModel`: all parts, dense factors, and lanes one by one.
+macro_rules! by_hand {
+    ($size:tt) => {
+        const PARTS: &'static [crane_model::Part] = &crane_model::Part::ALL;
 
-            fn factorise(
-                &self,
-                q: &SVector<f64, $size>,
-                added_inertia: &SVector<f64, $size>,
-                _: &SMatrix<f64, 6, 6>,
-            ) -> Self::Factors {
-                factorise(self, q, added_inertia)
-            }
+        type Factors = $crate::common::implicit::Factors<$size>;
+        type Lanes = crane_model::OneByOne<Self>;
 
-            fn solve(&self, factors: &Self::Factors, r: &SVector<f64, $size>) -> SVector<f64, $size> {
-                solve(factors, r)
-            }
-
-            fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
-                let stiffness_and_damping: fn(&Self) -> [[f64; 2]; $size] = $stiffness_and_damping;
-                out.copy_from_slice(&stiffness_and_damping(self));
-            }
+        fn lanes(cranes: [&Self; 8]) -> Self::Lanes {
+            crane_model::OneByOne(cranes.map(Clone::clone))
         }
 
-        impl Ensemble<$size> for $crane {
-            type Lanes = OneByOne<Self>;
+        fn factorise(
+            &self,
+            q: &nalgebra::SVector<f64, $size>,
+            added_inertia: &nalgebra::SVector<f64, $size>,
+            _: &nalgebra::SMatrix<f64, 6, 6>,
+        ) -> Self::Factors {
+            $crate::common::implicit::factorise(self, q, added_inertia)
+        }
 
-            fn lanes(cranes: [&Self; 8]) -> Self::Lanes {
-                OneByOne(cranes.map(Clone::clone))
-            }
+        fn solve(&self, factors: &Self::Factors, r: &nalgebra::SVector<f64, $size>) -> nalgebra::SVector<f64, $size> {
+            $crate::common::implicit::solve(factors, r)
         }
     };
 }
-
-implicit!(Lift, 1, |lift| [[lift.stiffness, lift.damping]]);
-implicit!(DoublePendulum, 2, |_| [[0.0; 2]; 2]);
-implicit!(Sledge, 2, |_| [[0.0; 2]; 2]);
-implicit!(Fixed, 0, |_| []);
+pub(crate) use by_hand;

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use crane_model::{
     Bound, CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Driven, CraneModel, Description, DriveInfo,
-    Dynamics, Linearisation, Linearise, List, ParameterError, ParameterInfo, Statics, Text,
+    Linearisation, List, ParameterError, ParameterInfo, Text,
 };
 use nalgebra::{Complex, Matrix1, Matrix4, Vector1};
 
@@ -105,6 +105,12 @@ impl Lift {
 }
 
 impl CraneModel<1> for Lift {
+    crate::common::implicit::by_hand! { 1 }
+
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        out.copy_from_slice(&[[self.stiffness, self.damping]]);
+    }
+
     fn description(&self) -> &Description {
         self.description
     }
@@ -156,9 +162,7 @@ impl CraneModel<1> for Lift {
     fn dissipation(&self, t: f64, _: &Vector1<f64>, v: &Vector1<f64>) -> f64 {
         self.damping * (self.support(t)[1] - v.x).powi(2)
     }
-}
 
-impl Dynamics<1> for Lift {
     fn mass_matrix(&self, _: &Vector1<f64>, out: &mut Matrix1<f64>) {
         *out = Matrix1::new(self.mass);
     }
@@ -170,9 +174,7 @@ impl Dynamics<1> for Lift {
     fn kinetic_energy(&self, _: &Vector1<f64>, v: &Vector1<f64>) -> f64 {
         0.5 * self.mass * v.x * v.x
     }
-}
 
-impl Statics<1> for Lift {
     fn static_residual(&self, t: f64, q: &Vector1<f64>, positions: &Vector1<f64>) -> Vector1<f64> {
         -self.bias(q, &Vector1::zeros()) - self.drive_forces_at_rest(t, q, positions)
     }
@@ -184,9 +186,7 @@ impl Statics<1> for Lift {
     fn drive_forces_at_rest(&self, _: f64, q: &Vector1<f64>, positions: &Vector1<f64>) -> Vector1<f64> {
         (positions - q) * self.stiffness
     }
-}
 
-impl Linearise<1> for Lift {
     fn linearise(&self, _: &Vector1<f64>) -> Linearisation<1> {
         let [mass, stiffness, damping] = [self.mass, self.stiffness, self.damping].map(Matrix1::new);
         Linearisation { mass, stiffness, damping }

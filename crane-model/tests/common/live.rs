@@ -2,14 +2,11 @@
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::{
-    CraneModel, Description, Dynamics, Linearisation, Linearise, ParameterError,
-    dyn_crane::{DynCrane, DynDynamics, DynLinearise, DynModel},
-    statics,
-};
+use crane_model::{CraneModel, Description, Linearisation, ParameterError, dyn_crane::DynCrane, statics};
 use nalgebra::{Matrix4, SMatrix, SVector};
 
 /// A crane of `N` coordinates.
+#[derive(Clone)]
 pub struct Live<const N: usize>(LiveCrane);
 
 impl<const N: usize> Live<N> {
@@ -36,6 +33,8 @@ fn vector<const N: usize>(write: impl FnOnce(&mut [f64])) -> SVector<f64, N> {
 }
 
 impl<const N: usize> CraneModel<N> for Live<N> {
+    crate::common::implicit::by_hand! { N }
+
     fn description(&self) -> &Description {
         self.0.description()
     }
@@ -63,9 +62,7 @@ impl<const N: usize> CraneModel<N> for Live<N> {
     fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
         self.0.gravity_energy(q.as_slice())
     }
-}
 
-impl<const N: usize> Dynamics<N> for Live<N> {
     fn mass_matrix(&self, q: &SVector<f64, N>, out: &mut SMatrix<f64, N, N>) {
         self.0.mass_matrix(q.as_slice(), out.as_mut_slice());
     }
@@ -81,9 +78,7 @@ impl<const N: usize> Dynamics<N> for Live<N> {
     fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
         self.0.kinetic_energy(q.as_slice(), v.as_slice())
     }
-}
 
-impl<const N: usize> Linearise<N> for Live<N> {
     fn linearise(&self, q: &SVector<f64, N>) -> Linearisation<N> {
         let [mut mass, mut stiffness, mut damping] = [SMatrix::<f64, N, N>::zeros(); 3];
         self.0.linearise(q.as_slice(), mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());

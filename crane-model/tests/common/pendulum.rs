@@ -4,8 +4,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crane_model::{
-    CoordinateInfo, CoordinateKind::Rotation, CoordinateRole::Passive, CraneModel, Description, Dynamics,
-    Linearisation, Linearise, ParameterError, Statics,
+    CoordinateInfo, CoordinateKind::Rotation, CoordinateRole::Passive, CraneModel, Description, Linearisation,
+    ParameterError,
 };
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
@@ -76,6 +76,12 @@ impl DoublePendulum {
 }
 
 impl CraneModel<2> for DoublePendulum {
+    crate::common::implicit::by_hand! { 2 }
+
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        out.fill([0.0; 2]);
+    }
+
     fn description(&self) -> &Description {
         self.description
     }
@@ -104,9 +110,7 @@ impl CraneModel<2> for DoublePendulum {
     fn element_energy(&self, q: &Vector2<f64>) -> f64 {
         0.5 * self.stiffness * (q.x - self.rest).powi(2)
     }
-}
 
-impl Dynamics<2> for DoublePendulum {
     fn mass_matrix(&self, q: &Vector2<f64>, out: &mut Matrix2<f64>) {
         let [upper, lower] = self.static_moments();
         let coupling = self.coupling() * (q.x - q.y).cos();
@@ -125,9 +129,7 @@ impl Dynamics<2> for DoublePendulum {
     fn kinetic_energy(&self, q: &Vector2<f64>, v: &Vector2<f64>) -> f64 {
         0.5 * v.dot(&(mass_matrix(self, q) * v))
     }
-}
 
-impl Statics<2> for DoublePendulum {
     fn static_residual(&self, _: f64, q: &Vector2<f64>, _: &Vector2<f64>) -> Vector2<f64> {
         let [upper, lower] = self.static_moments();
         Vector2::new(self.gravity * upper * q.x.sin(), self.gravity * lower * q.y.sin())
@@ -141,9 +143,7 @@ impl Statics<2> for DoublePendulum {
             self.gravity * lower * q.y.cos(),
         ));
     }
-}
 
-impl Linearise<2> for DoublePendulum {
     fn linearise(&self, q: &Vector2<f64>) -> Linearisation<2> {
         let [mut mass, mut stiffness, damping] = [Matrix2::zeros(); 3];
         self.mass_matrix(q, &mut mass);

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use crane_model::{
     BodyInfo, Bound, CoordinateInfo, CoordinateKind::Translation, CoordinateRole::Base, CraneModel, Description,
-    Dynamics, InternalForces, Linearisation, Linearise, List, ParameterError, ParameterInfo, Statics, Text, Wrench,
+    Linearisation, List, ParameterError, ParameterInfo, Text, Wrench,
 };
 use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2, Vector3};
 
@@ -62,6 +62,12 @@ impl Sledge {
 }
 
 impl CraneModel<2> for Sledge {
+    crate::common::implicit::by_hand! { 2 }
+
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        out.fill([0.0; 2]);
+    }
+
     fn description(&self) -> &Description {
         &DESCRIPTION
     }
@@ -92,9 +98,7 @@ impl CraneModel<2> for Sledge {
     fn gravity_energy(&self, q: &Vector2<f64>) -> f64 {
         -self.bias(q, &Vector2::zeros()).dot(q)
     }
-}
 
-impl Dynamics<2> for Sledge {
     fn mass_matrix(&self, _: &Vector2<f64>, out: &mut Matrix2<f64>) {
         *out = Matrix2::identity() * MASS;
     }
@@ -106,9 +110,7 @@ impl Dynamics<2> for Sledge {
     fn kinetic_energy(&self, _: &Vector2<f64>, v: &Vector2<f64>) -> f64 {
         0.5 * MASS * v.norm_squared()
     }
-}
 
-impl Statics<2> for Sledge {
     fn static_residual(&self, _: f64, q: &Vector2<f64>, _: &Vector2<f64>) -> Vector2<f64> {
         STIFFNESS * q - self.bias(q, &Vector2::zeros())
     }
@@ -116,15 +118,11 @@ impl Statics<2> for Sledge {
     fn tangent_stiffness(&self, _: f64, _: &Vector2<f64>, _: &Vector2<f64>, out: &mut Matrix2<f64>) {
         *out = Matrix2::identity() * STIFFNESS;
     }
-}
 
-impl Linearise<2> for Sledge {
     fn linearise(&self, _: &Vector2<f64>) -> Linearisation<2> {
         let [mass, stiffness, damping] = [MASS, STIFFNESS, 0.0].map(|entry| Matrix2::identity() * entry);
         Linearisation { mass, stiffness, damping }
     }
-}
 
-impl InternalForces<2> for Sledge {
     fn internal_forces(&self, _: f64, _: &Vector2<f64>, _: &Vector2<f64>, _: &Vector2<f64>, _: &mut [Wrench]) {}
 }

@@ -4,6 +4,13 @@
 macro_rules! impl_model_as_in_crane {
     ($wrapper:ident $($more:tt)*) => {
         impl<const N: usize, C: CraneModel<N>> CraneModel<N> for $wrapper<C> {
+            const PARTS: &'static [crane_model::Part] = C::PARTS;
+
+            type Lanes = crane_model::OneByOne<Self>;
+
+            fn lanes(cranes: [&Self; 8]) -> Self::Lanes {
+                crane_model::OneByOne(cranes.map(Clone::clone))
+            }
             fn description(&self) -> &Description {
                 self.crane.description()
             }
@@ -38,7 +45,7 @@ mod runs;
 
 use common::Lift;
 use crane_model::{
-    Implicit,
+    CraneModel,
     dynamics::{rk4::State, rosenbrock},
 };
 use nalgebra::Complex;
@@ -71,6 +78,6 @@ fn state_after_a_second<const N: usize>(
     })
 }
 
-fn implicit<const N: usize, C: Implicit<N>>(crane: &C) -> impl Fn(f64, f64, &State<N>) -> (State<N>, State<N>) {
+fn implicit<const N: usize, C: CraneModel<N>>(crane: &C) -> impl Fn(f64, f64, &State<N>) -> (State<N>, State<N>) {
     move |t, h, state| rosenbrock::step(crane, t, h, state).expect("inertia")
 }

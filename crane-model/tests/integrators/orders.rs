@@ -1,7 +1,7 @@
 //! Orders and stability functions of the methods, at constant steps.
 
 use crane_model::{
-    CraneModel, Description, Dynamics, Implicit, ParameterError,
+    CraneModel, Description, ParameterError,
     dynamics::{Method, bdf, dormand_prince, rk4::State, rosenbrock},
 };
 use nalgebra::{Complex, Matrix4, SMatrix, SVector, Vector1, Vector2};
@@ -20,9 +20,8 @@ struct Misled<C> {
 }
 
 // It does not report the motions of its drives.
-impl_model_as_in_crane!(Misled);
-
-impl<const N: usize, C: Dynamics<N>> Dynamics<N> for Misled<C> {
+impl_model_as_in_crane! {
+    Misled
     fn mass_matrix(&self, q: &SVector<f64, N>, out: &mut SMatrix<f64, N, N>) {
         self.crane.mass_matrix(q, out);
     }
@@ -32,9 +31,6 @@ impl<const N: usize, C: Dynamics<N>> Dynamics<N> for Misled<C> {
     fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
         self.crane.kinetic_energy(q, v)
     }
-}
-
-impl<const N: usize, C: Dynamics<N>> Implicit<N> for Misled<C> {
     type Factors = Factors<N>;
     fn factorise(&self, q: &SVector<f64, N>, added_inertia: &SVector<f64, N>, _: &SMatrix<f64, 6, 6>) -> Factors<N> {
         factorise(&self.crane, q, added_inertia)
@@ -63,7 +59,7 @@ fn starts() -> Vec<State<2>> {
     (1..5).map(|k| start(f64::from(k))).collect()
 }
 
-fn explicit<const N: usize, C: Dynamics<N>>(crane: &C) -> impl Fn(f64, f64, &State<N>) -> (State<N>, State<N>) {
+fn explicit<const N: usize, C: CraneModel<N>>(crane: &C) -> impl Fn(f64, f64, &State<N>) -> (State<N>, State<N>) {
     move |t, h, state| dormand_prince::step(crane, t, h, state).expect("inertia")
 }
 
@@ -150,7 +146,7 @@ fn the_implicit_method_is_stable_up_to_a_sector() {
 
 /// Steps of backward differences over a second, from as many states as the order, computed almost exactly by fine steps of the explicit
 /// pair.
-fn differences<const N: usize, C: Implicit<N>>(crane: &C, order: usize, steps: i32, start: State<N>) -> State<N> {
+fn differences<const N: usize, C: CraneModel<N>>(crane: &C, order: usize, steps: i32, start: State<N>) -> State<N> {
     /// Steps of the explicit pair per step.
     const FINE: i32 = 8;
     let h = f64::from(steps).recip();

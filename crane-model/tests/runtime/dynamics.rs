@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::common::{self, DoublePendulum, Lift};
 use crane_model::{
-    Description, Implicit,
+    CraneModel, Description,
     dynamics::{Cause, Method, Settings, Simulation, rk4},
 };
 use nalgebra::{SVector, Vector1, Vector2};
@@ -15,7 +15,7 @@ fn classical(description: &Description) -> Settings {
 }
 
 /// First coordinate every 0.1 s for 1 s, in steps of `step`, s.
-fn motion<const N: usize, C: Implicit<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> Vec<(f64, f64)> {
+fn motion<const N: usize, C: CraneModel<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> Vec<(f64, f64)> {
     let mut motion = Vec::new();
     let settings = Settings { duration: 1.0, step, output: 0.1, ..classical(crane.description()) };
     Simulation::of(crane, rk4::State::at_rest(start), &settings)
@@ -52,7 +52,7 @@ fn order_of_rk4_on_a_double_pendulum() {
 }
 
 /// Maximum absolute value of `E(t) − E(0) − W + D` over a run, J.
-fn energy_error<const N: usize, C: Implicit<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> f64 {
+fn energy_error<const N: usize, C: CraneModel<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> f64 {
     let settings = Settings { duration: 4.0, step, output: 0.1, audit: true, ..classical(crane.description()) };
     let mut first = None;
     let mut worst = 0.0_f64;

@@ -1,7 +1,7 @@
 //! Cranes simulated eight at a time move as each would alone.
 
 use crane_model::{
-    Dynamics, Ensemble, dyn_crane,
+    CraneModel, dyn_crane,
     dynamics::{Method, Settings, Simulation, Stopped, ensemble, rk4::State},
     statics,
 };
@@ -29,7 +29,7 @@ fn settings() -> Settings {
 }
 
 /// Kutta's step for one crane, straight from the tableau, with the first and the last stage just within the step.
-fn single_step<const N: usize, C: Dynamics<N>>(crane: &C, t: f64, h: f64, State { q, v }: State<N>) -> State<N> {
+fn single_step<const N: usize, C: CraneModel<N>>(crane: &C, t: f64, h: f64, State { q, v }: State<N>) -> State<N> {
     let half = 0.5 * h;
     let shift = 16.0 * f64::EPSILON * t.abs().max((t + h).abs());
     let a1 = crane.forward_dynamics(t + shift, &q, &v);
@@ -42,7 +42,7 @@ fn single_step<const N: usize, C: Dynamics<N>>(crane: &C, t: f64, h: f64, State 
     State { q: q + (v + (v2 + v3) * 2.0 + v4) * (h / 6.0), v: v + (a1 + (a2 + a3) * 2.0 + a4) * (h / 6.0) }
 }
 
-fn lanes_are_single_cranes<const N: usize, C: Ensemble<N> + Copy>(cranes: [(C, State<N>); 8], h: f64, steps: u32) {
+fn lanes_are_single_cranes<const N: usize, C: CraneModel<N> + Copy>(cranes: [(C, State<N>); 8], h: f64, steps: u32) {
     let lanes = C::lanes(std::array::from_fn(|lane| &cranes[lane].0));
     let mut states = ensemble::States::of(std::array::from_fn(|lane| &cranes[lane].1));
     let mut single = cranes.map(|(_, start)| start);

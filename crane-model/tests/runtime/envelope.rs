@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::{
-    dyn_crane::{DynCrane, DynModel},
+    dyn_crane::DynCrane,
     envelope::{Axes, Axis, Envelope, Execution, Limit, Limits, Rating, SlewAxis, Varied},
     statics::Settings,
 };

@@ -2,7 +2,7 @@
 
 use crate::common::{DoublePendulum, GRAVITY, Lift};
 use crane_model::{
-    Linearisation, Linearise,
+    CraneModel, Linearisation,
     modes::{SmallMotions, damped, undamped},
 };
 use nalgebra::{Matrix2, Vector1, Vector2};

@@ -3,7 +3,7 @@
 use crate::live::Live;
 use crane_codegen::SourceFile;
 use crane_model::{
-    CoordinateKind, CoordinateRole, Dynamics, Linearise,
+    CoordinateKind, CoordinateRole, CraneModel,
     dynamics::{Method, rk4},
     modes::{SmallMotions, damped},
     stability::{StabilityFunction, cause, grouped, limit},
@@ -22,13 +22,13 @@ const RATE: f64 = 1e-7;
 const GROWTH: f64 = 1e4;
 
 /// Largest stable step of RK4 according to its stability function, s.
-fn predicted<const N: usize, C: Linearise<N>>(crane: &C, q: &SVector<f64, N>) -> f64 {
+fn predicted<const N: usize, C: CraneModel<N>>(crane: &C, q: &SVector<f64, N>) -> f64 {
     let modes = damped(&SmallMotions::from(&crane.linearise(q))).expect("modes");
     limit(&modes, &Method::Rk4.stability()).expect("a limit").step
 }
 
 /// Whether small motions about `q`, the equilibrium with the drives as at time `t`, stay small.
-fn stays<const N: usize, C: Dynamics<N>>(crane: &C, t: f64, q: &SVector<f64, N>, step: f64) -> bool {
+fn stays<const N: usize, C: CraneModel<N>>(crane: &C, t: f64, q: &SVector<f64, N>, step: f64) -> bool {
     let mut state = rk4::State { q: *q, v: SVector::repeat(RATE) };
     let start = crane.kinetic_energy(&state.q, &state.v);
     for _ in 0..STEPS {
@@ -42,7 +42,7 @@ fn stays<const N: usize, C: Dynamics<N>>(crane: &C, t: f64, q: &SVector<f64, N>,
 }
 
 /// Largest step with which small motions stay small, by bisection, s.
-fn observed<const N: usize, C: Dynamics<N>>(crane: &C, t: f64, q: &SVector<f64, N>, near: f64) -> f64 {
+fn observed<const N: usize, C: CraneModel<N>>(crane: &C, t: f64, q: &SVector<f64, N>, near: f64) -> f64 {
     let (mut stable, mut unstable) = (0.9 * near, 1.1 * near);
     assert!(stays(crane, t, q, stable) && !stays(crane, t, q, unstable), "the limit is not within 10 % of {near:e} s");
     while unstable - stable > 0.004 * near {
@@ -52,7 +52,7 @@ fn observed<const N: usize, C: Dynamics<N>>(crane: &C, t: f64, q: &SVector<f64, 
     0.5 * (stable + unstable)
 }
 
-fn agree<const N: usize, C: Dynamics<N> + Linearise<N>>(name: &str, crane: &C, t: f64, q: &SVector<f64, N>) {
+fn agree<const N: usize, C: CraneModel<N>>(name: &str, crane: &C, t: f64, q: &SVector<f64, N>) {
     let predicted = predicted(crane, q);
     let observed = observed(crane, t, q, predicted);
     let error = observed / predicted - 1.0;

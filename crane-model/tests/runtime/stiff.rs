@@ -2,18 +2,15 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::{
-    GRAVITY, coordinate, description,
-    implicit::{Factors, factorise, mass_matrix, solve},
-};
+use crate::common::{GRAVITY, coordinate, description, implicit::mass_matrix};
 use crane_model::{
     CoordinateInfo,
     CoordinateKind::{Rotation, Translation},
     CoordinateRole::Passive,
-    CraneModel, Description, Dynamics, Implicit, ParameterError,
+    CraneModel, Description, ParameterError,
     dynamics::{Method, Run, Settings, Simulation, rk4::State},
 };
-use nalgebra::{Matrix2, Matrix4, SMatrix, Vector2};
+use nalgebra::{Matrix2, Matrix4, Vector2};
 
 const COORDINATES: &[CoordinateInfo] =
     &[coordinate("rod_x", Translation, Passive), coordinate("rod_psi", Rotation, Passive)];
@@ -21,6 +18,7 @@ static DESCRIPTION: Description = description("elastic pendulum", COORDINATES, &
 
 /// A unit mass on a rod of length 1 + x at the angle ψ from hanging:
 /// `ẍ = (1 + x) ψ̇² + g cos ψ − k x − d ẋ`, `(1 + x) ψ̈ = −2 ẋ ψ̇ − g sin ψ`.
+#[derive(Clone)]
 struct ElasticPendulum {
     /// k, N/m.
     stiffness: f64,
@@ -29,6 +27,8 @@ struct ElasticPendulum {
 }
 
 impl CraneModel<2> for ElasticPendulum {
+    crate::common::implicit::by_hand! { 2 }
+
     fn description(&self) -> &Description {
         &DESCRIPTION
     }
@@ -47,9 +47,7 @@ impl CraneModel<2> for ElasticPendulum {
     fn gravity_energy(&self, q: &Vector2<f64>) -> f64 {
         -GRAVITY * (1.0 + q.x) * q.y.cos()
     }
-}
 
-impl Dynamics<2> for ElasticPendulum {
     fn mass_matrix(&self, q: &Vector2<f64>, out: &mut Matrix2<f64>) {
         *out = Matrix2::from_diagonal(&Vector2::new(1.0, (1.0 + q.x).powi(2)));
     }
@@ -61,16 +59,7 @@ impl Dynamics<2> for ElasticPendulum {
     fn kinetic_energy(&self, q: &Vector2<f64>, v: &Vector2<f64>) -> f64 {
         0.5 * v.dot(&(mass_matrix(self, q) * v))
     }
-}
 
-impl Implicit<2> for ElasticPendulum {
-    type Factors = Factors<2>;
-    fn factorise(&self, q: &Vector2<f64>, added_inertia: &Vector2<f64>, _: &SMatrix<f64, 6, 6>) -> Factors<2> {
-        factorise(self, q, added_inertia)
-    }
-    fn solve(&self, factors: &Factors<2>, r: &Vector2<f64>) -> Vector2<f64> {
-        solve(factors, r)
-    }
     fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
         out.copy_from_slice(&[[self.stiffness, self.damping], [0.0; 2]]);
     }

@@ -41,7 +41,7 @@ impl Cut {
 
 #[cfg(feature = "std")]
 impl Description {
-    /// Cuts of the crane, in the order of `InternalForces::internal_forces`: the
+    /// Cuts of the crane, in the order of `CraneModel::internal_forces`: the
     /// ground, then from base to tip the joint of every link and the bodies of that link, each element of a beam followed by the sections
     /// within it.
     pub fn cuts(&self) -> Vec<Cut> {

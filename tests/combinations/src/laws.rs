@@ -2,7 +2,7 @@
 
 use crane_codegen::chain::{Group, Law as ForceLaw, LoadAxes, Profile, Transmission};
 use crane_live::{Hold, LiveCrane, SteeredMotion};
-use crane_model::dyn_crane::{DynCrane, DynDynamics, DynModel, DynStatics};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{Contacts, InitialState, Integration, Method, Sample, Settings};
 use crane_model::envelope::{Condition, Limits};
 use crane_model::linear::{About, Forces, Input, Output, linear_model, outputs};
@@ -649,7 +649,7 @@ type State = (f64, Vec<f64>, Vec<f64>);
 
 /// Accelerations of a block of eight are those of each one alone, to the bit.
 fn lanes(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
-    use crane_model::dyn_crane::DynEnsemble;
+    use crane_model::dyn_crane::DynCrane;
     use crane_model::rt::lanes::f64x8;
     let n = pose.len();
     let states: Vec<_> = (0..8).map(|_| state(crane, pose, rng)).collect();

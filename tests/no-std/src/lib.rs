@@ -85,7 +85,7 @@ macro_rules! exported_by_hand {
     };
 }
 
-/// All functions of a generated crane, one per method of the traits.
+/// All functions of a generated crane, one per method of the trait.
 macro_rules! crane {
     ($(#[$about:meta])* $name:ident) => {
         $(#[$about])*
@@ -94,9 +94,7 @@ macro_rules! crane {
             use crane_model::nalgebra::{SMatrix, SVector};
             use crane_model::rt::lanes::f64x8;
             use crane_model::{
-                CraneModel, Dynamics, Ensemble, Implicit, InternalForces, LaneDynamics, Linearisation, Linearise,
-                MotionDerivatives, ParameterError, Statics, TransformDerivatives,
-            };
+                CraneModel, LaneDynamics, Linearisation, ParameterError};
             use crane_quantities::quantities;
 
             pub use generated::{Crane, DESCRIPTION, N};
@@ -116,9 +114,9 @@ macro_rules! crane {
             /// Stiffness or damping of the base.
             pub type BaseMatrix = SMatrix<f64, 6, 6>;
             /// Factors of a system.
-            pub type Factors = <Crane as Implicit<N>>::Factors;
+            pub type Factors = <Crane as CraneModel<N>>::Factors;
             /// Eight cranes.
-            pub type Lanes = <Crane as Ensemble<N>>::Lanes;
+            pub type Lanes = <Crane as CraneModel<N>>::Lanes;
 
             quantities! { exported }
 

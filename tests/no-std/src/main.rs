@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use crane_model::dynamics::rk4::State;
 use crane_model::rt::lanes::splat;
-use crane_model::{Ensemble, Entry, Implicit};
+use crane_model::{CraneModel, Entry};
 use crane_quantities::{Extent, FunctionId, quantities};
 
 /// The arguments of functions, by their names in the table.
@@ -65,7 +65,7 @@ macro_rules! call_all {
         quantities! { @(call_rows) [of crane length at] }
         black_box(of::potential_energy(&crane, t, &q));
         black_box(of::mass_matrix_and_bias(&crane, &q, &v, &mut mass));
-        let factors: <Crane as Implicit<{ of::N }>>::Factors = of::factorise(&crane, &q, &v, &BaseMatrix::zeros());
+        let factors: <Crane as CraneModel<{ of::N }>>::Factors = of::factorise(&crane, &q, &v, &BaseMatrix::zeros());
         black_box(of::solve(&crane, &factors, &v));
         black_box(of::linearise(&crane, &q));
         let lanes = Crane::lanes([&crane; 8]);

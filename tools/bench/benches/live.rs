@@ -13,7 +13,7 @@ use crane_codegen::mechanics;
 use crane_codegen::program::FunctionId;
 use crane_live::machine::Number;
 use crane_live::{LiveCrane, Routine};
-use crane_model::dyn_crane::{DynBlock, DynEnsemble};
+use crane_model::dyn_crane::{DynBlock, DynCrane};
 use crane_model::rt::lanes::f64x8;
 
 /// Number of alternating rounds.

@@ -7,11 +7,11 @@ use crane_codegen::program::FunctionId;
 use crane_codegen::{SourceFile, compile, mechanics};
 use crane_live::machine::Arguments;
 use crane_live::{LiveCrane, Routine};
-use crane_model::dyn_crane::{DynDynamics, DynMotionDerivatives};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::rk4;
 use crane_model::nalgebra::{Cholesky, Matrix4, Matrix6, SMatrix, SVector};
 use crane_model::rt::lanes::f64x8;
-use crane_model::{Ensemble, Implicit, LaneDynamics, MotionDerivatives, TransformDerivatives};
+use crane_model::{CraneModel, LaneDynamics};
 
 use crate::kernel::{Kernel, Lower, Rows};
 use crate::states::{self, EightStates, State};
@@ -27,7 +27,7 @@ pub const STEP: f64 = 1e-8;
 #[must_use]
 pub fn all<const N: usize, C>(spec: &str) -> Vec<Kernel>
 where
-    C: Implicit<N> + Ensemble<N> + MotionDerivatives<N> + Default + Copy + 'static,
+    C: CraneModel<N> + Default + Copy + 'static,
 {
     let crane = C::default();
     let lanes = C::lanes([&crane; 8]);
@@ -136,7 +136,7 @@ fn interpreted<const N: usize>(spec: &str) -> impl Fn(&State<N>, &mut SVector<f6
 }
 
 /// Derivatives of accelerations while the forces keep their values, as other libraries have them: `∂q̈/∂q − A⁻¹ ∂f/∂q`, and with v.
-fn at_given_forces<const N: usize>(crane: &impl MotionDerivatives<N>, s: &State<N>, out: &mut [[f64; N]]) {
+fn at_given_forces<const N: usize>(crane: &impl CraneModel<N>, s: &State<N>, out: &mut [[f64; N]]) {
     crane.forward_dynamics_derivatives(s.t, &s.q, &s.v, out);
     let mut forces = vec![[0.0; N]; 2 * N];
     crane.force_derivatives(s.t, &s.q, &s.v, &mut forces);
@@ -157,7 +157,7 @@ fn at_given_forces<const N: usize>(crane: &impl MotionDerivatives<N>, s: &State<
 #[must_use]
 pub fn all_of_small<const N: usize, C>(spec: &str) -> Vec<Kernel>
 where
-    C: Implicit<N> + Ensemble<N> + MotionDerivatives<N> + TransformDerivatives<N> + Default + Copy + 'static,
+    C: CraneModel<N> + Default + Copy + 'static,
 {
     let crane = C::default();
     let states = &states::near_guess::<N>(&crane);

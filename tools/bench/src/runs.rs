@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crane_model::dynamics::{InitialState, Method, Sample, Settings, Simulation, Watch};
-use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Implicit, statics};
+use crane_model::{CoordinateKind, CoordinateRole, CraneModel, statics};
 
 /// Before any drive moves, s.
 const BEGIN: f64 = -3.0;
@@ -39,7 +39,7 @@ pub fn plan<const N: usize>(model: &impl CraneModel<N>) -> Plan {
 ///
 /// # Errors
 /// The run stopped.
-pub fn run<const N: usize, C: Implicit<N> + Default>(
+pub fn run<const N: usize, C: CraneModel<N> + Default>(
     method: Method,
     accuracy: f64,
     repeat: usize,

@@ -2,7 +2,7 @@
 
 use crane_codegen::chain::{Chain, Inertia};
 use crane_codegen::{SourceFile, compile};
-use crane_model::TransformDerivatives;
+use crane_model::CraneModel;
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use crane_model::rt::fma;
 
@@ -57,7 +57,7 @@ impl TripleSum {
     }
 
     /// A and e at a state.
-    pub fn evaluate<const N: usize, C: TransformDerivatives<N>>(
+    pub fn evaluate<const N: usize, C: CraneModel<N>>(
         &self,
         crane: &C,
         q: &SVector<f64, N>,

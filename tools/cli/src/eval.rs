@@ -8,10 +8,7 @@ use std::{
 use crane_codegen::program::Argument;
 use crane_live::rows::{Evaluation, Rows};
 use crane_live::{FunctionId, LiveCrane, Refusal};
-use crane_model::{
-    Description, Tree,
-    dyn_crane::{DynCrane, DynDerivatives, DynModel},
-};
+use crane_model::{Description, Tree, dyn_crane::DynCrane};
 use nalgebra::Matrix4;
 use serde_json::{Map, Value};
 
@@ -126,7 +123,7 @@ fn arrays(options: &Eval, crane: &LiveCrane, states: &States) -> Vec<Array> {
             data.extend(numbers);
         }
         arrays.push(over(quantity.name(), shape, data));
-        arrays.extend(index(*quantity, &(crane as &dyn DynModel).tree()));
+        arrays.extend(index(*quantity, &(crane as &dyn DynCrane).tree()));
     }
     arrays
 }
@@ -160,7 +157,7 @@ fn takes_accelerations(id: FunctionId) -> bool {
 /// Shape and numbers of a quantity at one state.
 fn evaluate(quantity: Quantity, live: &LiveCrane, t: f64, q: &[f64], v: &[f64]) -> (Vec<usize>, Vec<f64>) {
     let crane: &dyn DynCrane = live;
-    let derivatives: &dyn DynDerivatives = live;
+    let derivatives: &dyn DynCrane = live;
     match quantity {
         // Only those of coordinates that move a body.
         Quantity::Of(FunctionId::TransformDerivatives) => matrices(&derivatives.transform_derivatives_at(q)),

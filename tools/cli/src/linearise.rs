@@ -5,7 +5,7 @@ use std::{io::Write, path::Path};
 use crane_live::LiveCrane;
 use crane_model::{
     Description, LoopJointInfo,
-    dyn_crane::{DynCrane, DynModel},
+    dyn_crane::DynCrane,
     dynamics, force_states,
     linear::{About, Drift, Forces, LinearModel},
     modes::{ComplexShape, DampedMode, Held, SmallMotions, damped_with_shapes, steady},

@@ -14,7 +14,7 @@ use std::{
 use crane_live::LiveCrane;
 use crane_model::{
     Description,
-    dyn_crane::{DynCrane, DynModel},
+    dyn_crane::DynCrane,
     envelope::{Axes, Axis},
     linear::{About, Forces, Input, NoModel, Output, linear_model, outputs},
     margins::{self, Acting, Loop, Margins, NoMargins},

@@ -3,7 +3,7 @@
 use crane_live::LiveCrane;
 use crane_model::{
     Description,
-    dyn_crane::DynModel,
+    dyn_crane::DynCrane,
     linear::{About, Input, LinearModel, Output, linear_model, outputs},
     nalgebra::DMatrix,
     results::Column,

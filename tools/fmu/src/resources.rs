@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crane_codegen::{Checked, SourceFile, compile};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dyn_crane::DynCrane;
 
 use crate::Make;
 
@@ -28,7 +28,7 @@ pub struct Opened {
 }
 
 /// Values of the parameters as the text of a file.
-pub fn write_parameters(crane: &dyn DynModel) -> String {
+pub fn write_parameters(crane: &dyn DynCrane) -> String {
     let mut text = String::new();
     for (index, parameter) in crane.description().parameters.iter().enumerate() {
         let _ = writeln!(text, "{},{:?}", parameter.name, crane.parameter(index));
@@ -76,7 +76,7 @@ fn read_resource(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
 }
 
 /// Index and value of a parameter.
-fn read_line(crane: &dyn DynModel, line: &str) -> Option<(usize, f64)> {
+fn read_line(crane: &dyn DynCrane, line: &str) -> Option<(usize, f64)> {
     let (name, value) = line.split_once(',')?;
     let index = crane.description().parameters.iter().position(|parameter| parameter.name == name)?;
     Some((index, value.parse().ok()?))

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use crane_live::{LiveCrane, Motion};
 use crane_model::{
-    dyn_crane::{DynCrane, DynModel},
+    dyn_crane::DynCrane,
     dynamics::{InitialState, Method, Settings, without_events},
     force_states::ForceStates,
     results::{instants, quantities_at},

@@ -12,7 +12,7 @@ use crane_codegen::{
 use crane_live::LiveCrane;
 use crane_model::{
     Text,
-    dyn_crane::{DynCrane, DynDynamics, DynModel},
+    dyn_crane::DynCrane,
     dynamics::{Method, Settings},
     results::cautions::BEND,
     runs::{Start, record_checked},

@@ -3,8 +3,8 @@
 use std::sync::OnceLock;
 
 use crane_codegen::chain::Chain;
-use crane_codegen::mechanics::{self, Part};
-use crane_codegen::program::{FunctionId, Product, Program};
+use crane_codegen::mechanics;
+use crane_codegen::program::{FunctionId, Part, Product, Program};
 
 use crate::assemble::TooLarge;
 use crate::routine::Routine;
@@ -70,7 +70,7 @@ impl Library {
 
     /// The program with a function.
     fn program(&self, id: FunctionId) -> &Program {
-        let part = Part::of(id);
+        let part = id.part();
         self.programs[part as usize].get_or_init(|| mechanics::derive_part(&self.chain, part))
     }
 }

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use crane_codegen::build;
 use crane_codegen::program::{Count, Extent, FunctionId};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel, DynMotionDerivatives, Instance};
+use crane_model::dyn_crane::{DynCrane, Instance};
 use crane_model::dynamics::{InitialState, Settings, ensemble::Member};
 use crane_model::nalgebra::Matrix6;
 use crane_model::{ParameterError, modes, statics};
@@ -74,9 +74,9 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
 }
 
 /// Derivatives of the transforms of both, in that order.
-fn assert_same_derivatives(live: &LiveCrane, compiled: &dyn DynDerivatives) {
+fn assert_same_derivatives(live: &LiveCrane, compiled: &dyn DynCrane) {
     let (_, q, _) = state(live);
-    let [live, compiled] = [live as &dyn DynDerivatives, compiled].map(|crane| {
+    let [live, compiled] = [live as &dyn DynCrane, compiled].map(|crane| {
         [crane.transform_derivatives_at(&q), crane.transform_second_derivatives_at(&q)]
             .map(|matrices| matrices.iter().flatten().copied().collect::<Vec<f64>>())
     });
@@ -86,10 +86,10 @@ fn assert_same_derivatives(live: &LiveCrane, compiled: &dyn DynDerivatives) {
 }
 
 /// Derivatives of the dynamics of both, in that order.
-fn assert_same_derivatives_of_motion(live: &LiveCrane, compiled: &dyn DynMotionDerivatives) {
+fn assert_same_derivatives_of_motion(live: &LiveCrane, compiled: &dyn DynCrane) {
     let (t, q, v) = state(live);
     let n = live.size();
-    let of = |crane: &dyn DynMotionDerivatives| {
+    let of = |crane: &dyn DynCrane| {
         let lengths = [3 * n * crane.count(Count::Points), n, 2 * n * n, 3 * n * n];
         let mut results = lengths.map(|length| vec![f64::NAN; length]);
         let [points, required, slopes, accelerations] = &mut results;
@@ -119,8 +119,8 @@ fn derivatives_give_the_same_bits() {
         ($($name:ident),*) => {
             $({
                 let (live, compiled) = (live(stringify!($name)), crane_shipped::$name::Crane::default());
-                assert_same_derivatives(&live, &Instance::<{ crane_shipped::$name::N }, _>(&compiled));
-                assert_same_derivatives_of_motion(&live, &Instance::<{ crane_shipped::$name::N }, _>(&compiled));
+                assert_same_derivatives(&live, &Instance::<{ crane_shipped::$name::N }, _>(compiled));
+                assert_same_derivatives_of_motion(&live, &Instance::<{ crane_shipped::$name::N }, _>(compiled));
             })*
         };
     }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crane_codegen::build;
 use crane_codegen::program::{Count, Extent, FunctionId, Item};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynEnsemble, DynModel};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{Method, Settings};
 use crane_model::results::Peaks;
 use crane_model::runs::ensemble::{Case, Execution, Outcome, Reason, run_ensemble};
@@ -100,7 +100,7 @@ fn the_lists_of_a_fleet_are_those_of_its_cranes() {
     for name in CRANES_WITH_FLEETS {
         let crane = shipped(name);
         let members = members(&crane);
-        let models: Vec<&dyn DynModel> = members.iter().map(|member| member as &dyn DynModel).collect();
+        let models: Vec<&dyn DynCrane> = members.iter().map(|member| member as &dyn DynCrane).collect();
         let fleet = crane.fleet(&models).unwrap_or_else(|| panic!("{name} has fleets"));
         let n = crane.size();
         let wave = |lane: usize, scale: f64| move |i: usize| scale * (1.3 * (i + 3 * lane) as f64 + 1.0).sin();

@@ -13,10 +13,7 @@ use crane_codegen::chain::{
 };
 use crane_codegen::exchange::{Look, shapes};
 use crane_live::LiveCrane;
-use crane_model::{
-    AttachmentInfo, BodyInfo, ConnectorInfo, CoordinateRole, Description, Tree,
-    dyn_crane::{DynCrane, DynModel},
-};
+use crane_model::{AttachmentInfo, BodyInfo, ConnectorInfo, CoordinateRole, Description, Tree, dyn_crane::DynCrane};
 use nalgebra::{Matrix4, Vector3};
 
 use crate::bars::{Bar, bars};
@@ -164,7 +161,7 @@ impl Scene {
             description.coordinates.iter().map(|coordinate| coordinate.role == CoordinateRole::ElementVector).collect();
         let reference: Vec<f64> = q.iter().zip(&vectors).map(|(q, vector)| if *vector { 0.0 } else { *q }).collect();
         let frames = crane.transforms_at(&reference);
-        let (tree, sizes) = ((live as &dyn DynModel).tree(), crane.body_sizes_at());
+        let (tree, sizes) = ((live as &dyn DynCrane).tree(), crane.body_sizes_at());
         let forms = shapes(live.chain(), live.parameters());
         let body = |(index, (info, frame)): (usize, (&BodyInfo, &Matrix4<f64>))| {
             let [mass, length] = sizes[index];

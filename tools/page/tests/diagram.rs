@@ -7,7 +7,7 @@ use std::{env, fs};
 use crane_codegen::chain::{Chain, CoordinateId};
 use crane_codegen::{SourceFile, build, compile};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::nalgebra::Vector3;
 use crane_model::statics::Settings;
 use crane_page::{
@@ -197,7 +197,7 @@ fn a_cylinder_is_drawn_as_long_as_it_is() {
         let frames: Vec<_> = scene.bodies.iter().map(|body| body.frame).collect();
         let pins = scene.cylinders[0].pins(&frames);
         let mut states = [Vector3::zeros()];
-        (&live as &dyn DynModel).cylinder_states(&[0.3], &[0.0], &mut states);
+        (&live as &dyn DynCrane).cylinder_states(&[0.3], &[0.0], &mut states);
         let computed = states[0].x;
         let drawn = (pins.rod - pins.foot).norm();
         assert!((drawn - computed).abs() < 1e-14, "{side}: drawn {drawn}, computed {computed}");

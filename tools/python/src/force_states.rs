@@ -1,7 +1,7 @@
 //! Functions of states that include those of forces: pressures, spools, bristles.
 
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::force_states::{self, ForceStates};
 use crane_model::results::{quantities, quantities_at};
 use pyo3::exceptions::PyValueError;

@@ -1,7 +1,7 @@
 //! Functions of a state: arrays in, arrays out.
 
 use crane_live::FunctionId;
-use crane_model::dyn_crane::{DynCrane, DynDerivatives, DynModel};
+use crane_model::dyn_crane::DynCrane;
 use crane_quantities::{axes, quantities};
 use pyo3::prelude::*;
 
@@ -66,9 +66,9 @@ impl Crane {
         let (bodies, n) = (self.live.description().bodies.len(), self.live.size());
         let state = State::pose(q);
         self.one_by_one(py, state, &[bodies, n, n, 4, 4], invalid, |crane, Moment { q, .. }, out| {
-            let crane: &dyn DynDerivatives = crane;
+            let crane: &dyn DynCrane = crane;
             let mut matrices = crane.transform_second_derivatives_at(q).into_iter();
-            let tree = (crane as &dyn DynModel).tree();
+            let tree = (crane as &dyn DynCrane).tree();
             for (body, of_body) in out.chunks_mut(16 * n * n).enumerate() {
                 let moving = tree.coordinates(body);
                 for (place, &m) in moving.iter().enumerate() {

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crane_live::{Hold, SteeredMotion};
 use crane_model::Text;
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{InitialState, Sample, Settings, Stopped};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::runs::ensemble::Case;

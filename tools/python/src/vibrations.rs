@@ -1,7 +1,7 @@
 //! Modes and stability about poses at rest, small motions about any motion, and steady motions, row by row.
 
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynLineariseMotion, DynModel};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::Method;
 use crane_model::modes::{DampedMode, Held, Mode, NoModes, damped, steady, undamped};
 use crane_model::runs::limiting_modes;
@@ -58,16 +58,10 @@ impl Crane {
         self.refuse_motions()?;
         let n = self.live.size();
         self.one_by_one(py, State { t, q: Some(q), v: Some(v), a: Some(a) }, &[3, n, n], invalid, |crane, at, out| {
-            let (mass, rest) = out.split_at_mut(n * n);
-            let (stiffness, damping) = rest.split_at_mut(n * n);
-            crane.linearise_motion(at.t, [&at.q, &at.v, &at.a], mass, stiffness, damping);
-            // Row by row.
-            for matrix in [mass, stiffness, damping] {
-                for i in 0..n {
-                    for j in 0..i {
-                        matrix.swap(i * n + j, j * n + i);
-                    }
-                }
+            let motions = (crane as &dyn DynCrane).linearise_motion(at.t, [&at.q, &at.v, &at.a]);
+            for (out, matrix) in out.chunks_exact_mut(n * n).zip(motions) {
+                // Row by row.
+                out.copy_from_slice(matrix.transpose().as_slice());
             }
         })
     }

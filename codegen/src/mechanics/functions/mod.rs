@@ -11,9 +11,7 @@ mod statics;
 use std::cell::OnceCell;
 
 use crate::chain::{Analyses, Beam, Body, BodyId, Chain, Group, Section};
-use crate::program::{
-    Argument, Count, Extent, Function, FunctionId, Item, Program, RuntimeTrait, Shape, Struct, Symbol,
-};
+use crate::program::{Argument, Count, Extent, Function, FunctionId, Item, Part, Program, Shape, Struct, Symbol};
 use crate::symbolic::{Expr, Graph, Stages, SweepTrace, SymbolId};
 
 use super::articulated::Effort;
@@ -31,78 +29,9 @@ use super::twist::{Twist, twists};
 use super::vector::{SymmetricMatrix, Vec3};
 use super::{cylinders, drives, effective_mass, energy, newton_euler, pads, points, rotors, transforms};
 
-/// Functions that are derived together, because they share most of their expressions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// Poses, forces, loops, energies: what every crane has.
-    Common,
-    /// Equations of motion.
-    Dynamics,
-    /// Systems of implicit steps, and their residual.
-    Systems,
-    /// Stiffness and damping of implicit steps.
-    StepMatrices,
-    /// Equilibria.
-    Statics,
-    /// Small motions.
-    Modes,
-    /// What joints and sections transmit.
-    InternalForces,
-    /// Derivatives of transforms.
-    Derivatives,
-    /// Derivatives of the dynamics.
-    MotionDerivatives,
-}
-
-impl Part {
-    /// All of them, in the order of their functions in programs.
-    pub const ALL: [Part; 9] = [
-        Part::Common,
-        Part::Dynamics,
-        Part::Systems,
-        Part::StepMatrices,
-        Part::Statics,
-        Part::Modes,
-        Part::InternalForces,
-        Part::Derivatives,
-        Part::MotionDerivatives,
-    ];
-
-    /// The part to which a function belongs.
-    #[must_use]
-    pub fn of(id: FunctionId) -> Self {
-        match id.runtime_trait() {
-            RuntimeTrait::CraneModel => Part::Common,
-            RuntimeTrait::Dynamics => Part::Dynamics,
-            RuntimeTrait::Implicit => match id {
-                FunctionId::Factorise | FunctionId::Solve | FunctionId::DynamicResidual => Part::Systems,
-                _ => Part::StepMatrices,
-            },
-            RuntimeTrait::Statics => Part::Statics,
-            RuntimeTrait::Linearise => Part::Modes,
-            RuntimeTrait::InternalForces => Part::InternalForces,
-            RuntimeTrait::TransformDerivatives => Part::Derivatives,
-            RuntimeTrait::MotionDerivatives => Part::MotionDerivatives,
-        }
-    }
-
-    /// Whether analyses request it.
-    fn is_in(self, analyses: Analyses) -> bool {
-        match self {
-            Part::Common => true,
-            Part::Dynamics | Part::Systems | Part::StepMatrices => analyses.dynamics,
-            Part::Statics => analyses.statics,
-            Part::Modes => analyses.modes,
-            Part::InternalForces => analyses.internal_forces,
-            Part::Derivatives => analyses.derivatives,
-            Part::MotionDerivatives => analyses.motion_derivatives,
-        }
-    }
-}
-
 /// Derives the functions of analyses over one graph.
 pub fn program(graph: Graph, chain: &Chain, analyses: Analyses) -> Program {
-    of_parts(graph, chain, &|part| part.is_in(analyses))
+    of_parts(graph, chain, &|part| analyses.request(part))
 }
 
 /// Derives the functions of a part over one graph.

@@ -2,7 +2,7 @@
 
 use super::{GAMMAS, ORDER, SAME, history::History};
 use crate::{
-    dyn_crane::DynImplicit,
+    dyn_crane::DynCrane,
     dynamics::{equations::Equations, motion::add, state::NotFinite, system::System},
     memory::{Visit, visit_numbers},
 };
@@ -13,7 +13,7 @@ const NEAR: f64 = 0.015;
 
 /// Newton's iteration for the next state.
 pub(super) struct Correction<'a> {
-    crane: &'a dyn DynImplicit,
+    crane: &'a dyn DynCrane,
     pub system: System<'a>,
     /// Where the system was factorised.
     factors: Place,
@@ -45,7 +45,7 @@ struct Place {
 
 impl<'a> Correction<'a> {
     /// Storage for motions of this many numbers.
-    pub fn new(crane: &'a dyn DynImplicit, len: usize) -> Self {
+    pub fn new(crane: &'a dyn DynCrane, len: usize) -> Self {
         let zeros = || vec![0.0; len];
         Self {
             crane,

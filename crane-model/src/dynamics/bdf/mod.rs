@@ -34,8 +34,8 @@ use super::{
 };
 use crate::memory::{visit_count, visit_flag, visit_numbers, visit_optional};
 use crate::{
-    Implicit,
-    dyn_crane::{DynImplicit, Instance},
+    CraneModel,
+    dyn_crane::{DynCrane, Instance},
     loop_joints::Open,
 };
 use correction::Correction;
@@ -71,7 +71,7 @@ const PATIENCE: usize = 3;
 ///
 /// # Errors
 /// An acceleration is not finite, or the iteration does not converge.
-pub fn step<const N: usize, C: Implicit<N>>(
+pub fn step<const N: usize, C: CraneModel<N>>(
     crane: &C,
     t: f64,
     h: f64,
@@ -81,7 +81,7 @@ pub fn step<const N: usize, C: Implicit<N>>(
     const MANY: usize = 30;
     /// Allowed last increment, relative to 1 m or rad plus the size of the new state.
     const EXACT: f64 = 1e-14;
-    let crane = Instance::<N, _>(crane);
+    let crane = Instance::<N, _>(crane.clone());
     let mut equations = Equations::new(&crane, References::of(&crane));
     if equations.states() > 0 || equations.has_loops() {
         return Err(NotFinite);
@@ -141,7 +141,7 @@ impl Contraction {
 /// A motion by backward differences; steps may pass the times of results, which are interpolated.
 pub struct Bdf<'a> {
     equations: Equations<'a>,
-    crane: &'a dyn DynImplicit,
+    crane: &'a dyn DynCrane,
     history: History,
     correction: Correction<'a>,
     control: Control,
@@ -178,7 +178,7 @@ struct Control {
 
 impl<'a> Bdf<'a> {
     /// Creates the motion, with the tolerance of the settings.
-    pub fn new(crane: &'a dyn DynImplicit, settings: &Settings) -> Self {
+    pub fn new(crane: &'a dyn DynCrane, settings: &Settings) -> Self {
         let equations = Equations::new(crane, References::of(crane));
         let norm = Norm::with_efforts(crane, &equations.references, SHARE * settings.tolerance);
         let len = equations.len();

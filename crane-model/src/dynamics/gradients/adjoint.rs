@@ -16,7 +16,7 @@ use super::{
     rates::Rates,
 };
 use crate::{
-    dyn_crane::{DynCrane, DynImplicit},
+    dyn_crane::DynCrane,
     dynamics::{
         Ahead, Course, EffortAccuracy, InitialState, Integration, NotFinite, Quantities, Run, Settings, Statistics,
         Stepper, Stopped, Watch,
@@ -170,7 +170,7 @@ impl<'a> Trace<'a> {
                 None => (crane, &mut *probes),
             };
             let (begin, state, settings) = course.phase();
-            let any: &dyn DynImplicit = present;
+            let any: &dyn DynCrane = present;
             let keeper = Keeper { follower: Follower::new(present, any, probes, along, &settings), kept: Vec::new() };
             let mut integration = Integration::by(Box::new(keeper), any, begin, state, &settings)?;
             let mut noted = Noted { watch: &mut *watch, leg: legs.len(), samples: &mut samples };

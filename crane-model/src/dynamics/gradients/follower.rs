@@ -2,7 +2,7 @@
 
 use super::{SAME, Slopes, jump::of_functions_of_time, rates::Rates};
 use crate::{
-    dyn_crane::{DynCrane, DynImplicit},
+    dyn_crane::DynCrane,
     dynamics::{
         Ahead, EffortAccuracy, NotFinite, Settings, Statistics, Stepper, Stopped,
         adaptive::{Adaptive, FIRST},
@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// A motion of a crane by the W-method, whose steps end where derivatives need it.
-pub(super) fn motion_of(crane: &dyn DynImplicit, tolerance: f64) -> Adaptive<'_, Stages<'_>> {
+pub(super) fn motion_of(crane: &dyn DynCrane, tolerance: f64) -> Adaptive<'_, Stages<'_>> {
     let equations = Equations::new(crane, References::of(crane));
     let stages = Stages::new(crane, equations.len());
     let norm = Norm::with_efforts(crane, &equations.references, tolerance);
@@ -60,7 +60,7 @@ impl<'a, 's> Follower<'a, 's> {
     /// Creates the motion, with the derivatives of its start, in full.
     pub fn new(
         crane: &'a dyn DynCrane,
-        any: &'a dyn DynImplicit,
+        any: &'a dyn DynCrane,
         slopes: &'s mut dyn Slopes,
         start: Vec<Vec<f64>>,
         settings: &Settings,

@@ -58,11 +58,7 @@ use super::{
     Course, Happening, InitialState, Integration, Quantities, Run, Sample, Settings, Stepper, Stopped, course::Observe,
 };
 pub use crate::feet::FeetSlopes;
-use crate::{
-    EventInfo, ParameterError,
-    dyn_crane::{DynCrane, DynImplicit},
-    force_states::ForceStates,
-};
+use crate::{EventInfo, ParameterError, dyn_crane::DynCrane, force_states::ForceStates};
 pub use adjoint::{Trace, Weights};
 pub use columns::{columns_along, columns_by};
 use follower::Follower;
@@ -276,7 +272,7 @@ pub fn simulate(
             None => (crane, &mut *slopes),
         };
         let (begin, state, settings) = course.phase();
-        let any: &dyn DynImplicit = present;
+        let any: &dyn DynCrane = present;
         let follower = Follower::new(present, any, slopes, along, &settings);
         let mut integration = Integration::by(Box::new(follower), any, begin, state, &settings)?;
         let mut observer = Derived { watch: &mut *watch, times: &times };

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::{At, CylinderSlopes, FeetSlopes, Slopes};
 use crate::{
-    dyn_crane::{DynCrane, DynDynamics, DynImplicit, DynSystem},
+    dyn_crane::{DynCrane, DynSystem},
     dynamics::{NotFinite, state::finite},
     force_states::ForceStates,
     loop_joints::Loops,
@@ -47,7 +47,7 @@ impl<'a> Rates<'a> {
         Self {
             crane,
             n,
-            system: (crane as &dyn DynImplicit).system(),
+            system: (crane as &dyn DynCrane).system(),
             of_states: vec![0.0; force_states.len()],
             by_states: DMatrix::zeros(force_states.len(), force_states.len()),
             force_states,
@@ -152,7 +152,7 @@ impl<'a> Rates<'a> {
         let crane = self.crane;
         self.loops.evaluate(crane, q, v);
         self.loops.choose();
-        self.loops.factorise(&mut |r, x| (crane as &dyn DynDynamics).solve_mass(q, r, x));
+        self.loops.factorise(&mut |r, x| (crane as &dyn DynCrane).solve_mass(q, r, x));
     }
 
     /// Moves derivatives, given in full, onto the loops of the crane, as a motion is: `J δq = −δφ`, then `J δv = −δφ̇`.

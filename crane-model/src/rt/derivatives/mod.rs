@@ -239,7 +239,7 @@ impl Piece {
     }
 }
 
-/// A⁻¹, row by row, of each state; `factors`: those of [`mass_factors`](crate::MotionDerivatives::mass_factors), row by row.
+/// A⁻¹, row by row, of each state; `factors`: those of [`mass_factors`](crate::CraneModel::mass_factors), row by row.
 #[inline(always)]
 pub fn inverse_mass_matrix<C: Columns>(
     links: &[Link],
@@ -256,7 +256,7 @@ pub fn inverse_mass_matrix<C: Columns>(
 }
 
 /// `∂r/∂q` and `∂r/∂v` in place of `∂f/∂q` and `∂f/∂v`, row by row; `factors`: those of
-/// [`residual_factors`](crate::MotionDerivatives::residual_factors).
+/// [`residual_factors`](crate::CraneModel::residual_factors).
 #[inline(always)]
 pub fn residual_derivatives<C: Columns>(
     links: &[Link],

@@ -7,7 +7,7 @@ use super::columns::{Columns, Constant, Scalar};
 use super::vectors::{Six, Three, commutator_add, cross_add, cross_subtract, dot, dot_add, plus, scaled_add, three};
 use super::{Link, Own};
 
-/// First rows of the vectors of [`residual_factors`](crate::MotionDerivatives::residual_factors).
+/// First rows of the vectors of [`residual_factors`](crate::CraneModel::residual_factors).
 mod rows {
     pub const OMEGA: usize = 0;
     pub const UPSILON: usize = 3;

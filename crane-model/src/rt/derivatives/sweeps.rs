@@ -165,7 +165,7 @@ pub(super) struct Sweeps<'a, C: Columns> {
 }
 
 impl<'a, C: Columns> Sweeps<'a, C> {
-    /// `factors`: those of [`mass_factors`](crate::MotionDerivatives::mass_factors), row by row.
+    /// `factors`: those of [`mass_factors`](crate::CraneModel::mass_factors), row by row.
     #[inline(always)]
     pub(super) fn new(links: &'a [Link], factors: &[C::Number], joints: &'a mut [Joint<C>]) -> Self {
         for j in 0..links.len() {

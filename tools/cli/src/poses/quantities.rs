@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crane_live::LiveCrane;
 use crane_model::{
     CoordinateKind, Description,
-    dyn_crane::{DynCrane, DynModel},
+    dyn_crane::DynCrane,
     envelope::{Axes, Condition, Limits, SlewAxis, Varied, only_mass, range_of_loads},
     modes::{Vibration, vibrations},
     nalgebra::Vector3,

@@ -4,14 +4,11 @@ use std::sync::{Mutex, PoisonError};
 
 use crane_codegen::chain::Input;
 use crane_codegen::program::{Extent, FunctionId, Item};
-use crane_model::dyn_crane::{
-    DynBlock, DynCrane, DynDynamics, DynEnsemble, DynImplicit, DynInternalForces, DynLinearise, DynModel, DynStatics,
-    DynSystem,
-};
+use crane_model::dyn_crane::{DynBlock, DynCrane, DynSystem};
 use crane_model::nalgebra::Matrix4;
 use crane_model::rt::lanes::f64x8;
 use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo, entry_type, slice_argument};
-use crane_quantities::{Count, quantities};
+use crane_quantities::{Count, Part, quantities};
 use wide::bytemuck::{cast_slice, cast_slice_mut};
 
 use super::LiveCrane;
@@ -63,7 +60,7 @@ impl Given {
 
 impl Fleet {
     /// Cranes which differ from one in their parameters and inputs, filled up with the last one.
-    pub fn new(crane: &LiveCrane, cranes: &[&dyn DynModel]) -> Self {
+    pub fn new(crane: &LiveCrane, cranes: &[&dyn DynCrane]) -> Self {
         let of = |lane: usize| cranes[lane.min(cranes.len() - 1)];
         let parameters = (0..crane.parameters.len()).map(|index| f64x8::from_lanes(|lane| of(lane).parameter(index)));
         let inputs = (0..crane.inputs.len()).flat_map(|index| {
@@ -133,7 +130,7 @@ impl Fleet {
             _ => spread(results, std::iter::repeat(1), out),
         });
         if called.is_none() {
-            out.fill(T::ZERO);
+            out.fill(T::repeat(0.0));
         }
     }
 
@@ -162,7 +159,11 @@ fn spread<T: Entry>(results: &[f64x8], parts: impl Iterator<Item = usize>, out: 
     }
 }
 
-impl DynModel for Fleet {
+impl DynCrane for Fleet {
+    fn parts(&self) -> &[Part] {
+        &[Part::Common, Part::Dynamics, Part::Systems, Part::StepMatrices, Part::Statics, Part::InternalForces]
+    }
+
     fn description(&self) -> &Description {
         &self.description
     }
@@ -211,22 +212,6 @@ impl DynModel for Fleet {
         });
     }
 
-    quantities! { methods of CraneModel }
-}
-
-impl DynStatics for Fleet {
-    quantities! { methods of Statics }
-}
-
-impl DynDynamics for Fleet {
-    quantities! { methods of Dynamics }
-}
-
-impl DynInternalForces for Fleet {
-    quantities! { methods of InternalForces }
-}
-
-impl DynImplicit for Fleet {
     fn system(&self) -> Box<dyn DynSystem + '_> {
         let ready = |id: FunctionId| {
             let routine = self.crane.library.routine(id)?;
@@ -239,62 +224,16 @@ impl DynImplicit for Fleet {
         Box::new(System { factorise, solve: ready(FunctionId::Solve), version: 1 })
     }
 
-    quantities! { methods of Implicit }
-}
-
-/// Linear systems of all cranes.
-struct System<'a> {
-    factorise: Option<(&'a Routine, Room)>,
-    solve: Option<(&'a Routine, Room)>,
-    /// The number of the factors.
-    version: u64,
-}
-
-impl DynSystem for System<'_> {
-    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
-        if let Some((routine, Room { machine, given, results })) = &mut self.factorise {
-            let arguments = Arguments { q, added_inertia, base, ..Arguments::none() };
-            routine.run(machine, &given.take(&arguments, &[]), results);
-            self.version += 1;
-        }
-    }
-
-    fn solve(&mut self, r: &[f64], out: &mut [f64]) {
-        if let Some((routine, Room { machine, given, results })) = &mut self.solve {
-            let factors = self.factorise.as_ref().map_or(&[][..], |(_, room)| &room.results);
-            let arguments = Arguments { r, ..Arguments::none() };
-            let own = given.take(&arguments, &[]);
-            routine.run(machine, &Arguments { factors, version: self.version, ..own }, results);
-            out.copy_from_slice(cast_slice(results));
-        }
-    }
-}
-
-impl DynLinearise for Fleet {
     fn linearise(&self, _: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]) {
         for matrix in [mass, stiffness, damping] {
             matrix.fill(f64::NAN);
         }
     }
-}
 
-/// Fleets of fleets have no faster way.
-impl DynEnsemble for Fleet {
     fn block(&self, _: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
         Ok(Box::new(Nothing))
     }
-}
 
-/// No cranes: their accelerations are NaN.
-struct Nothing;
-
-impl DynBlock for Nothing {
-    fn forward_dynamics(&mut self, _: f64, _: &[f64x8], _: &[f64x8], out: &mut [f64x8]) {
-        out.fill(f64x8::splat(f64::NAN));
-    }
-}
-
-impl DynCrane for Fleet {
     fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
         let mut values = self.parameters.clone();
         if let Some(values) = values.get_mut(index / CRANES) {
@@ -332,6 +271,57 @@ impl DynCrane for Fleet {
             inputs: inputs.clone(),
             rooms: no_rooms(),
         })
+    }
+
+    fn dynamic_residual_derivatives(&self, _: f64, _: &[f64], _: &[f64], _: &[f64], out: &mut [f64]) {
+        out.fill(f64::NAN);
+    }
+
+    fn inverse_mass_matrix(&self, _: &[f64], out: &mut [f64]) {
+        out.fill(f64::NAN);
+    }
+
+    fn forward_dynamics_derivatives(&self, _: f64, _: &[f64], _: &[f64], out: &mut [f64]) {
+        out.fill(f64::NAN);
+    }
+
+    quantities! { methods }
+}
+
+/// Linear systems of all cranes.
+struct System<'a> {
+    factorise: Option<(&'a Routine, Room)>,
+    solve: Option<(&'a Routine, Room)>,
+    /// The number of the factors.
+    version: u64,
+}
+
+impl DynSystem for System<'_> {
+    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
+        if let Some((routine, Room { machine, given, results })) = &mut self.factorise {
+            let arguments = Arguments { q, added_inertia, base, ..Arguments::none() };
+            routine.run(machine, &given.take(&arguments, &[]), results);
+            self.version += 1;
+        }
+    }
+
+    fn solve(&mut self, r: &[f64], out: &mut [f64]) {
+        if let Some((routine, Room { machine, given, results })) = &mut self.solve {
+            let factors = self.factorise.as_ref().map_or(&[][..], |(_, room)| &room.results);
+            let arguments = Arguments { r, ..Arguments::none() };
+            let own = given.take(&arguments, &[]);
+            routine.run(machine, &Arguments { factors, version: self.version, ..own }, results);
+            out.copy_from_slice(cast_slice(results));
+        }
+    }
+}
+
+/// No cranes: their accelerations are NaN.
+struct Nothing;
+
+impl DynBlock for Nothing {
+    fn forward_dynamics(&mut self, _: f64, _: &[f64x8], _: &[f64x8], out: &mut [f64x8]) {
+        out.fill(f64x8::splat(f64::NAN));
     }
 }
 

@@ -1,13 +1,13 @@
-//! Methods of the traits of a live crane, from the table of quantities.
+//! Methods of a live crane, from the table of quantities.
 
-/// The methods of a trait: each calls the function of its row.
+/// The methods: each calls the function of its row.
 macro_rules! methods {
-    ($(
+    ($($part:ident { $(
         $(#[doc = $remark:literal])*
         $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
         $(python($($python:tt)*))?;
-    )*) => {
-        $(method! { $result $id $name($($argument),*) })*
+    )* })*) => {
+        $($(method! { $result $id $name($($argument),*) })*)*
     };
 }
 

@@ -1,8 +1,7 @@
 //! A crane from a chain that implements the traits of all algorithms.
 
-mod analyses;
 mod fleet;
-mod linearise;
+mod loop_stiffness;
 mod methods;
 mod model;
 pub mod rows;
@@ -14,7 +13,7 @@ use std::sync::{Arc, Mutex, TryLockError};
 use crane_codegen::chain::{Chain, Input};
 use crane_codegen::program::{FunctionId, Shape};
 use crane_codegen::{Diagnostics, SourceFile, compile};
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::nalgebra::Matrix4;
 use crane_model::rt::derivatives::Link;
 use crane_model::rt::fill_tangent;
@@ -213,7 +212,7 @@ impl LiveCrane {
     /// What its coordinates are attached to.
     pub(crate) fn links(&self) -> Vec<Link> {
         let mut links = vec![Link::default(); self.size()];
-        fill_links(&self.description, DynModel::parents(self), &mut links);
+        fill_links(&self.description, DynCrane::parents(self), &mut links);
         links
     }
 
@@ -233,7 +232,7 @@ impl LiveCrane {
     fn list<T: Entry>(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [T]) {
         let called = self.call(id, arguments, |_, results| copy_entries(results, out));
         if called.is_none() {
-            out.fill(if self.is_too_large_for(id) { T::from_numbers(&[f64::NAN; 16]) } else { T::ZERO });
+            out.fill(T::repeat(if self.is_too_large_for(id) { f64::NAN } else { 0.0 }));
         }
     }
 
@@ -287,30 +286,5 @@ impl fmt::Debug for LiveCrane {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut debug = f.debug_struct("LiveCrane");
         debug.field("name", &self.description.name).field("parameters", &self.parameters).finish_non_exhaustive()
-    }
-}
-
-impl DynCrane for LiveCrane {
-    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
-        let mut values = self.parameters.clone();
-        if let Some(parameter) = values.get_mut(index) {
-            *parameter = value;
-        }
-        self.set_parameters(&values)
-    }
-
-    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
-        self.parameters = self.with_first(values)?;
-        // The workspaces contain constants computed from parameters.
-        self.rooms = no_rooms();
-        Ok(())
-    }
-
-    fn set_input(&mut self, index: usize, value: Option<f64>) {
-        self.inputs.set(index, slots_of(value));
-    }
-
-    fn boxed_clone(&self) -> Box<dyn DynCrane> {
-        Box::new(self.clone())
     }
 }

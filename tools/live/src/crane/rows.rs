@@ -1,13 +1,13 @@
 //! Quantities of many states, one state or eight at a time.
 //!
-//! A row is a state with its parameters. Its results are those of [`DynModel`] and related traits at that state, to the last bit,
+//! A row is a state with its parameters. Its results are those of [`DynCrane`] and related traits at that state, to the last bit,
 //! whatever the other rows contain.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use crane_codegen::program::{Argument, Count, Extent, FunctionId, Shape};
-use crane_model::dyn_crane::DynModel;
+use crane_model::dyn_crane::DynCrane;
 use crane_model::rt::derivatives::Columns;
 use crane_model::rt::fill_tangent;
 
@@ -330,7 +330,7 @@ impl LiveCrane {
     /// Extent of each index of a function's result for one state; of functions that leave factors, their number.
     #[must_use]
     pub fn shape(&self, function: FunctionId) -> Vec<usize> {
-        let (n, count) = (self.size(), |count: Count| DynModel::count(self, count));
+        let (n, count) = (self.size(), |count: Count| DynCrane::count(self, count));
         match function {
             FunctionId::ForwardDynamicsDerivatives | FunctionId::Linearise => vec![3, n, n],
             // Also those of coordinates that do not move a body.
@@ -352,7 +352,7 @@ fn places(crane: &LiveCrane, n: usize, id: FunctionId) -> Option<Vec<Option<usiz
     match id {
         FunctionId::Transforms => Some((0..bodies.len()).flat_map(row_by_row).map(Some).collect()),
         FunctionId::TransformDerivatives => {
-            let tree = (crane as &dyn DynModel).tree();
+            let tree = (crane as &dyn DynCrane).tree();
             let (mut places, mut matrices) = (Vec::new(), 0..);
             for body in 0..bodies.len() {
                 let moving = tree.coordinates(body);

@@ -1,46 +1,41 @@
 //! Computations that keep numbers between calls: linear systems of implicit steps, and eight cranes at a time.
 
 use crane_codegen::program::FunctionId;
-use crane_model::dyn_crane::{DynBlock, DynCrane, DynEnsemble, DynImplicit, DynModel, DynSystem};
+use crane_model::ParameterError;
+use crane_model::dyn_crane::{DynBlock, DynSystem};
 use crane_model::rt::lanes::f64x8;
-use crane_model::{ParameterError, entry_type, slice_argument};
-use crane_quantities::quantities;
 
-use super::fleet::Fleet;
-use super::methods::{method, methods};
 use super::{LiveCrane, at};
 use crate::machine::{Arguments, Machine};
-use crate::native::is_slower_in_lanes;
 use crate::routine::Routine;
-
-impl DynImplicit for LiveCrane {
-    fn system(&self) -> Box<dyn DynSystem + '_> {
-        let ready = |id: FunctionId| {
-            let routine = self.library.routine(id)?;
-            Some((routine, routine.machine(&self.parameters)))
-        };
-        let factors = self.library.routine(FunctionId::Factorise).map_or(0, Routine::results);
-        Box::new(System {
-            factorise: ready(FunctionId::Factorise),
-            solve: ready(FunctionId::Solve),
-            factors: vec![f64::NAN; factors],
-            version: 1,
-        })
-    }
-
-    quantities! { methods of Implicit }
-}
 
 /// A function and the machine for its calls.
 type Ready<'a, T> = Option<(&'a Routine, Machine<T>)>;
 
 /// Linear systems, with the factors of the last one.
-struct System<'a> {
+pub(super) struct System<'a> {
     factorise: Ready<'a, f64>,
     solve: Ready<'a, f64>,
     factors: Vec<f64>,
     /// Their number.
     version: u64,
+}
+
+impl<'a> System<'a> {
+    /// Of a crane.
+    pub fn new(crane: &'a LiveCrane) -> Self {
+        let ready = |id: FunctionId| {
+            let routine = crane.library.routine(id)?;
+            Some((routine, routine.machine(&crane.parameters)))
+        };
+        let factors = crane.library.routine(FunctionId::Factorise).map_or(0, Routine::results);
+        Self {
+            factorise: ready(FunctionId::Factorise),
+            solve: ready(FunctionId::Solve),
+            factors: vec![f64::NAN; factors],
+            version: 1,
+        }
+    }
 }
 
 impl DynSystem for System<'_> {
@@ -60,30 +55,29 @@ impl DynSystem for System<'_> {
     }
 }
 
-impl DynEnsemble for LiveCrane {
-    fn fleet(&self, cranes: &[&dyn DynModel]) -> Option<Box<dyn DynCrane>> {
-        let has_fleets = self.description.has_fleets(&self.loop_joints) && !cranes.is_empty() && !is_slower_in_lanes();
-        has_fleets.then(|| -> Box<dyn DynCrane> { Box::new(Fleet::new(self, cranes)) })
-    }
-
-    fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
-        let lanes = parameters.iter().map(|values| self.with_first(values)).collect::<Result<Vec<_>, _>>()?;
-        // Unused lanes are copies of this crane.
-        let of = |lane: usize| lanes.get(lane).unwrap_or(&self.parameters);
-        let eight = |index: usize| f64x8::new(std::array::from_fn(|lane| of(lane)[index]));
-        let parameters: Vec<f64x8> = (0..self.parameters.len()).map(eight).collect();
-        let routine = self.library.routine(FunctionId::ForwardDynamics);
-        Ok(Box::new(Block {
-            ready: routine.map(|routine| (routine, routine.machine(&parameters))),
-            inputs: self.inputs.numbers().map(f64x8::splat).collect(),
-        }))
-    }
-}
-
 /// Eight cranes.
-struct Block<'a> {
+pub(super) struct Block<'a> {
     ready: Ready<'a, f64x8>,
     inputs: Vec<f64x8>,
+}
+
+impl<'a> Block<'a> {
+    /// Cranes that differ from one in their parameters.
+    ///
+    /// # Errors
+    /// The parameters of a lane break a rule of the spec language.
+    pub fn new(crane: &'a LiveCrane, parameters: &[&[f64]]) -> Result<Self, ParameterError> {
+        let lanes = parameters.iter().map(|values| crane.with_first(values)).collect::<Result<Vec<_>, _>>()?;
+        // Unused lanes are copies of this crane.
+        let of = |lane: usize| lanes.get(lane).unwrap_or(&crane.parameters);
+        let eight = |index: usize| f64x8::new(std::array::from_fn(|lane| of(lane)[index]));
+        let parameters: Vec<f64x8> = (0..crane.parameters.len()).map(eight).collect();
+        let routine = crane.library.routine(FunctionId::ForwardDynamics);
+        Ok(Self {
+            ready: routine.map(|routine| (routine, routine.machine(&parameters))),
+            inputs: crane.inputs.numbers().map(f64x8::splat).collect(),
+        })
+    }
 }
 
 impl DynBlock for Block<'_> {

@@ -3,7 +3,7 @@
 use crane_codegen::build;
 use crane_codegen::program::FunctionId;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynDynamics, DynEnsemble, DynModel};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::rt::lanes::f64x8;
 
 /// Calls after which a function is surely machine code, where there is any.

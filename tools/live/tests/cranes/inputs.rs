@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
 use crane_live::{Hold, LiveCrane, SteeredMotion};
-use crane_model::dyn_crane::{DynCrane, DynModel};
+use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::{self, InitialState, Method, Sample, Settings, Watch};
 
 fn crane(text: &str) -> LiveCrane {

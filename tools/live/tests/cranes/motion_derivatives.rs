@@ -2,7 +2,7 @@
 
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, DynDynamics, DynImplicit, DynModel, DynMotionDerivatives};
+use crane_model::dyn_crane::DynCrane;
 
 fn shipped(name: &str) -> LiveCrane {
     let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));

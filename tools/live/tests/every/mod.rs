@@ -18,20 +18,22 @@ pub struct At<'a> {
 
 /// A call.
 macro_rules! call {
-    (other $($row:tt)*) => {};
-    (number $crane:ident $run:ident $take:ident $id:ident $name:ident($($argument:expr),*)) => {
+    (Derivatives $($row:tt)*) => {};
+    (MotionDerivatives $($row:tt)*) => {};
+    ($part:ident other $($row:tt)*) => {};
+    ($part:ident number $crane:ident $run:ident $take:ident $id:ident $name:ident($($argument:expr),*)) => {
         let mut number = f64::NAN;
         $run(FunctionId::$id, &mut || number = $crane.$name($($argument),*));
         $take(FunctionId::$id, vec![number]);
     };
-    ($list:tt $crane:ident $run:ident $take:ident $id:ident $name:ident($($argument:expr),*)) => {
+    ($part:ident $list:tt $crane:ident $run:ident $take:ident $id:ident $name:ident($($argument:expr),*)) => {
         let mut list = list($crane, FunctionId::$id);
         $run(FunctionId::$id, &mut || $crane.$name($($argument,)* &mut list));
         $take(FunctionId::$id, list.iter().flat_map(Entry::numbers).collect());
     };
 }
 
-/// Lets `run` make each call, with results that contain other numbers before, and passes the results on. Derivatives of transforms are not
+/// Lets `run` make each call, with results that contain other numbers before, and passes the results on. Derivatives are not
 /// among them.
 pub fn call_every(
     crane: &dyn DynCrane,
@@ -40,19 +42,15 @@ pub fn call_every(
     take: &mut dyn FnMut(FunctionId, Vec<f64>),
 ) {
     macro_rules! call_rows {
-        ($(
+        ($($part:ident { $(
             $(#[doc = $remark:literal])*
             $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
             $(python($($python:tt)*))?;
-        )*) => {
-            $(call! { $result crane run take $id $name($(at.$argument),*) })*
+        )* })*) => {
+            $($(call! { $part $result crane run take $id $name($(at.$argument),*) })*)*
         };
     }
-    quantities! { call_rows of CraneModel }
-    quantities! { call_rows of Dynamics }
-    quantities! { call_rows of Implicit }
-    quantities! { call_rows of Statics }
-    quantities! { call_rows of InternalForces }
+    quantities! { call_rows }
 }
 
 /// A list for the results of a function, with other contents.
@@ -62,5 +60,5 @@ fn list<T: Entry>(crane: &dyn DynCrane, id: FunctionId) -> Vec<T> {
         // A row of a fleet is one of all its cranes.
         numbers /= crane.cranes();
     }
-    vec![T::from_numbers(&[f64::NAN; 16][..T::LEN]); numbers / T::LEN]
+    vec![T::repeat(f64::NAN); numbers / T::LEN]
 }

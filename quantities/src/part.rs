@@ -1,0 +1,59 @@
+//! What is derived together.
+
+use crate::FunctionId;
+
+/// Functions that are derived together, because they share most of their expressions. An analysis of a spec requests one or several of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// Poses, forces, loops, energies: what every crane has.
+    Common,
+    /// Equations of motion.
+    Dynamics,
+    /// Systems of implicit steps, and their residual.
+    Systems,
+    /// Stiffness and damping of implicit steps.
+    StepMatrices,
+    /// Equilibria.
+    Statics,
+    /// Small motions.
+    Modes,
+    /// What joints and sections transmit.
+    InternalForces,
+    /// Derivatives of transforms.
+    Derivatives,
+    /// Derivatives of the dynamics.
+    MotionDerivatives,
+}
+
+impl Part {
+    /// All of them, in the order of the table.
+    pub const ALL: [Part; 9] = [
+        Part::Common,
+        Part::Dynamics,
+        Part::Systems,
+        Part::StepMatrices,
+        Part::Statics,
+        Part::Modes,
+        Part::InternalForces,
+        Part::Derivatives,
+        Part::MotionDerivatives,
+    ];
+
+    /// Its functions, in the order of the table.
+    pub fn functions(self) -> impl Iterator<Item = FunctionId> {
+        FunctionId::ALL.iter().copied().filter(move |id| id.part() == self)
+    }
+
+    /// Whether it is one of these.
+    #[must_use]
+    pub const fn is_in(self, parts: &[Part]) -> bool {
+        let mut index = 0;
+        while index < parts.len() {
+            if parts[index] as u8 == self as u8 {
+                return true;
+            }
+            index += 1;
+        }
+        false
+    }
+}
