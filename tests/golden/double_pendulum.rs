@@ -48,7 +48,7 @@ use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::rt::{MassAndBias, fill, fma, mirror, sin_cos};
 use ::crane_model::{
     BodyInfo, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel, Description,
-    Dynamics, Ensemble, Implicit, List, OneByOne, ParameterError, Text,
+    List, OneByOne, ParameterError, Part, Text,
 };
 
 /// Number of generalized coordinates.
@@ -828,7 +828,7 @@ pub fn joint_stiffness_and_damping() -> [[f64; 2]; 2] {
     out
 }
 
-/// Double pendulum: the generated functions behind the traits of the runtime.
+/// Double pendulum: the generated functions behind the trait of the runtime.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crane;
 
@@ -839,6 +839,14 @@ impl Default for Crane {
 }
 
 impl CraneModel<N> for Crane {
+    const PARTS: &'static [Part] = &[
+        Part::Common,
+        Part::Dynamics,
+        Part::Systems,
+        Part::StepMatrices,
+    ];
+    type Factors = Factors;
+    type Lanes = OneByOne<Crane>;
     fn description(&self) -> &Description {
         &DESCRIPTION
     }
@@ -851,6 +859,17 @@ impl CraneModel<N> for Crane {
         _value: f64,
     ) -> Result<(), ParameterError> {
         Ok(())
+    }
+    fn lanes(cranes: [&Self; 8]) -> OneByOne<Crane> {
+        OneByOne(cranes.map(|crane| *crane))
+    }
+    fn factorise(
+        &self,
+        q: &SVector<f64, N>,
+        added_inertia: &SVector<f64, N>,
+        base: &SMatrix<f64, 6, 6>,
+    ) -> Factors {
+        factorise(q, added_inertia, base)
     }
     fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
         fill(out, &transforms(q));
@@ -881,9 +900,6 @@ impl CraneModel<N> for Crane {
     fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
         gravity_energy(q)
     }
-}
-
-impl Dynamics<N> for Crane {
     fn forward_dynamics(
         &self,
         t: f64,
@@ -912,18 +928,6 @@ impl Dynamics<N> for Crane {
     fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
         kinetic_energy(q, v)
     }
-}
-
-impl Implicit<N> for Crane {
-    type Factors = Factors;
-    fn factorise(
-        &self,
-        q: &SVector<f64, N>,
-        added_inertia: &SVector<f64, N>,
-        base: &SMatrix<f64, 6, 6>,
-    ) -> Factors {
-        factorise(q, added_inertia, base)
-    }
     fn solve(&self, f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
         solve(f, r)
     }
@@ -938,12 +942,5 @@ impl Implicit<N> for Crane {
     }
     fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
         fill(out, &joint_stiffness_and_damping());
-    }
-}
-
-impl Ensemble<N> for Crane {
-    type Lanes = OneByOne<Crane>;
-    fn lanes(cranes: [&Self; 8]) -> OneByOne<Crane> {
-        OneByOne(cranes.map(|crane| *crane))
     }
 }

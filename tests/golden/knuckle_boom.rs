@@ -55,8 +55,8 @@ use ::crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use ::crane_model::rt::{MassAndBias, fill, fma, mirror, sin_cos, symmetric};
 use ::crane_model::{
     BodyInfo, Bound, CoordinateInfo, CoordinateKind, CoordinateRole, CraneModel,
-    Description, DriveInfo, Dynamics, Ensemble, Implicit, Linearisation, Linearise, List,
-    ParameterError, ParameterInfo, Refusal, Statics, Text,
+    Description, DriveInfo, Linearisation, List, ParameterError, ParameterInfo, Part,
+    Refusal, Text,
 };
 
 /// Number of generalized coordinates.
@@ -3050,225 +3050,6 @@ pub fn linearise(q: &SVector<f64, N>, c: &Constants) -> Linearisation<N> {
     }
 }
 
-/// Planar knuckle-boom crane on a fixed base: the generated functions behind the traits of the runtime.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crane {
-    constants: Constants,
-}
-
-impl Crane {
-    /// The crane with these values of its live parameters.
-    ///
-    /// # Errors
-    /// The values break a rule of the spec language.
-    pub fn new(params: Params) -> Result<Self, ParameterError> {
-        params.check()?;
-        Ok(Crane {
-            constants: Constants::of(&params),
-        })
-    }
-    /// Values of the live parameters.
-    #[allow(dead_code)]
-    pub fn params(&self) -> &Params {
-        &self.constants.params
-    }
-}
-
-impl Default for Crane {
-    fn default() -> Self {
-        Crane {
-            constants: Constants::of(&Params::default()),
-        }
-    }
-}
-
-impl CraneModel<N> for Crane {
-    fn description(&self) -> &Description {
-        &DESCRIPTION
-    }
-    fn parameter(&self, index: usize) -> f64 {
-        match index {
-            0 => self.constants.params.payload,
-            _ => f64::NAN,
-        }
-    }
-    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
-        let mut params = self.constants.params;
-        match index {
-            0 => params.payload = value,
-            _ => {}
-        }
-        *self = Crane::new(params)?;
-        Ok(())
-    }
-    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
-        let mut params = self.constants.params;
-        for (index, &value) in values.iter().enumerate() {
-            match index {
-                0 => params.payload = value,
-                _ => {}
-            }
-        }
-        *self = Crane::new(params)?;
-        Ok(())
-    }
-    fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
-        fill(out, &transforms(q));
-    }
-    fn body_sizes(&self, out: &mut [[f64; 2]]) {
-        fill(out, &body_sizes(&self.constants));
-    }
-    fn points(&self, q: &SVector<f64, N>, out: &mut [Vector3<f64>]) {
-        fill(out, &points(q));
-    }
-    fn point_velocities(
-        &self,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-        out: &mut [Vector3<f64>],
-    ) {
-        fill(out, &point_velocities(q, v));
-    }
-    fn point_accelerations(
-        &self,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-        a: &SVector<f64, N>,
-        out: &mut [Vector3<f64>],
-    ) {
-        fill(out, &point_accelerations(q, v, a));
-    }
-    fn forces(
-        &self,
-        t: f64,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-    ) -> SVector<f64, N> {
-        forces(t, q, v)
-    }
-    fn drive_forces(
-        &self,
-        t: f64,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-    ) -> SVector<f64, N> {
-        drive_forces(t, q, v)
-    }
-    fn joint_damper_forces(&self, v: &SVector<f64, N>) -> SVector<f64, N> {
-        joint_damper_forces(v)
-    }
-    fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
-        fill(out, &drive_motions(t));
-    }
-    fn drive_pieces(&self, out: &mut [[f64; 2]]) {
-        fill(out, &drive_pieces());
-    }
-    fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
-        gravity_energy(q, &self.constants)
-    }
-    fn drive_energy(&self, t: f64, q: &SVector<f64, N>) -> f64 {
-        drive_energy(t, q)
-    }
-    fn drive_power(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
-        drive_power(t, q, v)
-    }
-    fn dissipation(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
-        dissipation(t, q, v)
-    }
-}
-
-impl Dynamics<N> for Crane {
-    fn forward_dynamics(
-        &self,
-        t: f64,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-    ) -> SVector<f64, N> {
-        forward_dynamics(t, q, v, &self.constants)
-    }
-    fn solve_mass(&self, q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
-        solve_mass(q, r, &self.constants)
-    }
-    fn mass_matrix(&self, q: &SVector<f64, N>, out: &mut SMatrix<f64, N, N>) {
-        mass_matrix(q, &self.constants, out);
-    }
-    fn mass_matrix_and_bias(
-        &self,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-        mass: &mut SMatrix<f64, N, N>,
-    ) -> SVector<f64, N> {
-        mass_matrix_and_bias(q, v, &self.constants, mass)
-    }
-    fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
-        bias(q, v, &self.constants)
-    }
-    fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
-        kinetic_energy(q, v, &self.constants)
-    }
-}
-
-impl Implicit<N> for Crane {
-    type Factors = Factors;
-    fn factorise(
-        &self,
-        q: &SVector<f64, N>,
-        added_inertia: &SVector<f64, N>,
-        base: &SMatrix<f64, 6, 6>,
-    ) -> Factors {
-        factorise(q, added_inertia, base, &self.constants)
-    }
-    fn solve(&self, f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
-        solve(f, r)
-    }
-    fn dynamic_residual(
-        &self,
-        t: f64,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-        a: &SVector<f64, N>,
-    ) -> SVector<f64, N> {
-        dynamic_residual(t, q, v, a, &self.constants)
-    }
-    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
-        fill(out, &joint_stiffness_and_damping());
-    }
-}
-
-impl Statics<N> for Crane {
-    fn static_residual(
-        &self,
-        t: f64,
-        q: &SVector<f64, N>,
-        positions: &SVector<f64, N>,
-    ) -> SVector<f64, N> {
-        static_residual(t, q, positions, &self.constants)
-    }
-    fn tangent_stiffness(
-        &self,
-        t: f64,
-        q: &SVector<f64, N>,
-        positions: &SVector<f64, N>,
-        out: &mut SMatrix<f64, N, N>,
-    ) {
-        tangent_stiffness(t, q, positions, &self.constants, out);
-    }
-    fn drive_forces_at_rest(
-        &self,
-        t: f64,
-        q: &SVector<f64, N>,
-        positions: &SVector<f64, N>,
-    ) -> SVector<f64, N> {
-        drive_forces_at_rest(t, q, positions)
-    }
-}
-
-impl Linearise<N> for Crane {
-    fn linearise(&self, q: &SVector<f64, N>) -> Linearisation<N> {
-        linearise(q, &self.constants)
-    }
-}
-
 /// Eight cranes per call.
 pub mod lanes {
     use ::crane_model::nalgebra::SVector;
@@ -3657,13 +3438,225 @@ pub mod lanes {
     }
 }
 
-impl Ensemble<N> for Crane {
+/// Planar knuckle-boom crane on a fixed base: the generated functions behind the trait of the runtime.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crane {
+    constants: Constants,
+}
+
+impl Crane {
+    /// The crane with these values of its live parameters.
+    ///
+    /// # Errors
+    /// The values break a rule of the spec language.
+    pub fn new(params: Params) -> Result<Self, ParameterError> {
+        params.check()?;
+        Ok(Crane {
+            constants: Constants::of(&params),
+        })
+    }
+    /// Values of the live parameters.
+    #[allow(dead_code)]
+    pub fn params(&self) -> &Params {
+        &self.constants.params
+    }
+}
+
+impl Default for Crane {
+    fn default() -> Self {
+        Crane {
+            constants: Constants::of(&Params::default()),
+        }
+    }
+}
+
+impl CraneModel<N> for Crane {
+    const PARTS: &'static [Part] = &[
+        Part::Common,
+        Part::Dynamics,
+        Part::Systems,
+        Part::StepMatrices,
+        Part::Statics,
+        Part::Modes,
+    ];
+    type Factors = Factors;
     type Lanes = lanes::Cranes;
+    fn description(&self) -> &Description {
+        &DESCRIPTION
+    }
+    fn parameter(&self, index: usize) -> f64 {
+        match index {
+            0 => self.constants.params.payload,
+            _ => f64::NAN,
+        }
+    }
+    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
+        let mut params = self.constants.params;
+        match index {
+            0 => params.payload = value,
+            _ => {}
+        }
+        *self = Crane::new(params)?;
+        Ok(())
+    }
+    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
+        let mut params = self.constants.params;
+        for (index, &value) in values.iter().enumerate() {
+            match index {
+                0 => params.payload = value,
+                _ => {}
+            }
+        }
+        *self = Crane::new(params)?;
+        Ok(())
+    }
     fn lanes(cranes: [&Self; 8]) -> lanes::Cranes {
         lanes::Cranes::new(
             &lanes::Params {
                 payload: cranes.map(|crane| crane.constants.params.payload).into(),
             },
         )
+    }
+    fn factorise(
+        &self,
+        q: &SVector<f64, N>,
+        added_inertia: &SVector<f64, N>,
+        base: &SMatrix<f64, 6, 6>,
+    ) -> Factors {
+        factorise(q, added_inertia, base, &self.constants)
+    }
+    fn transforms(&self, q: &SVector<f64, N>, out: &mut [Matrix4<f64>]) {
+        fill(out, &transforms(q));
+    }
+    fn body_sizes(&self, out: &mut [[f64; 2]]) {
+        fill(out, &body_sizes(&self.constants));
+    }
+    fn points(&self, q: &SVector<f64, N>, out: &mut [Vector3<f64>]) {
+        fill(out, &points(q));
+    }
+    fn point_velocities(
+        &self,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        out: &mut [Vector3<f64>],
+    ) {
+        fill(out, &point_velocities(q, v));
+    }
+    fn point_accelerations(
+        &self,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        a: &SVector<f64, N>,
+        out: &mut [Vector3<f64>],
+    ) {
+        fill(out, &point_accelerations(q, v, a));
+    }
+    fn forces(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        forces(t, q, v)
+    }
+    fn drive_forces(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        drive_forces(t, q, v)
+    }
+    fn joint_damper_forces(&self, v: &SVector<f64, N>) -> SVector<f64, N> {
+        joint_damper_forces(v)
+    }
+    fn drive_motions(&self, t: f64, out: &mut [[f64; 2]]) {
+        fill(out, &drive_motions(t));
+    }
+    fn drive_pieces(&self, out: &mut [[f64; 2]]) {
+        fill(out, &drive_pieces());
+    }
+    fn gravity_energy(&self, q: &SVector<f64, N>) -> f64 {
+        gravity_energy(q, &self.constants)
+    }
+    fn drive_energy(&self, t: f64, q: &SVector<f64, N>) -> f64 {
+        drive_energy(t, q)
+    }
+    fn drive_power(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
+        drive_power(t, q, v)
+    }
+    fn dissipation(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
+        dissipation(t, q, v)
+    }
+    fn forward_dynamics(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        forward_dynamics(t, q, v, &self.constants)
+    }
+    fn solve_mass(&self, q: &SVector<f64, N>, r: &SVector<f64, N>) -> SVector<f64, N> {
+        solve_mass(q, r, &self.constants)
+    }
+    fn mass_matrix(&self, q: &SVector<f64, N>, out: &mut SMatrix<f64, N, N>) {
+        mass_matrix(q, &self.constants, out);
+    }
+    fn mass_matrix_and_bias(
+        &self,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        mass: &mut SMatrix<f64, N, N>,
+    ) -> SVector<f64, N> {
+        mass_matrix_and_bias(q, v, &self.constants, mass)
+    }
+    fn bias(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+        bias(q, v, &self.constants)
+    }
+    fn kinetic_energy(&self, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
+        kinetic_energy(q, v, &self.constants)
+    }
+    fn solve(&self, f: &Factors, r: &SVector<f64, N>) -> SVector<f64, N> {
+        solve(f, r)
+    }
+    fn dynamic_residual(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+        a: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        dynamic_residual(t, q, v, a, &self.constants)
+    }
+    fn joint_stiffness_and_damping(&self, out: &mut [[f64; 2]]) {
+        fill(out, &joint_stiffness_and_damping());
+    }
+    fn static_residual(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        positions: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        static_residual(t, q, positions, &self.constants)
+    }
+    fn tangent_stiffness(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        positions: &SVector<f64, N>,
+        out: &mut SMatrix<f64, N, N>,
+    ) {
+        tangent_stiffness(t, q, positions, &self.constants, out);
+    }
+    fn drive_forces_at_rest(
+        &self,
+        t: f64,
+        q: &SVector<f64, N>,
+        positions: &SVector<f64, N>,
+    ) -> SVector<f64, N> {
+        drive_forces_at_rest(t, q, positions)
+    }
+    fn linearise(&self, q: &SVector<f64, N>) -> Linearisation<N> {
+        linearise(q, &self.constants)
     }
 }
