@@ -16,10 +16,10 @@ use crane_quantities::ColumnKind;
 use nalgebra::DMatrixViewMut;
 
 use crate::{
-    BristleInfo, Description,
+    BristleInfo, Description, StateAt,
     column::column_name,
     dyn_crane::DynCrane,
-    stateful_force::{Evaluated, ForceState, Row, StateAt, StatefulForce, StatefulForces},
+    stateful_force::{Evaluated, ForceState, Row, StatefulForce, StatefulForces},
 };
 
 /// The joints of a crane that stick, with the names of their coordinates.

@@ -3,18 +3,16 @@
 use std::ops::ControlFlow;
 
 use crate::{
-    ParameterError, Wrench,
+    ParameterError, StateAt, Wrench,
     dyn_crane::{DynCrane, Energies},
     dynamics,
     dynamics::{InitialState, Run, Sample, Stopped, ensemble, ensemble::Member},
     feet::{Feet, Slid},
     force_states,
     hydraulics::Oil,
-    loop_joints::Loops,
     modes,
     modes::SmallMotions,
     results::QUANTITIES,
-    stateful_force::StateAt,
     statics,
     statics::Equilibrium,
 };
@@ -24,8 +22,7 @@ use crate::{
 impl dyn DynCrane + '_ {
     /// Torques and forces of the drives at a sample of a run, those of cylinders with a valve from their pressures: N m and N.
     pub fn drive_efforts_of(&self, sample: &Sample<'_>) -> Vec<f64> {
-        let &Sample { t, q, v, x, .. } = sample;
-        self.drive_efforts_with(&StateAt { t, q, v, x })
+        self.drive_efforts_with(sample)
     }
 
     /// The same at a state of the crane and its forces.
@@ -45,9 +42,7 @@ impl dyn DynCrane + '_ {
 
     /// Energies at a sample of a run, with the springs of feet that have slid, J.
     pub fn energies_of(&self, sample: &Sample<'_>) -> Energies {
-        let &Sample { t, q, v, x, .. } = sample;
-        let moment = StateAt { t, q, v, x };
-        self.energies_with(&moment, &Slid::at(self, &moment))
+        self.energies_with(sample, &Slid::at(self, sample))
     }
 
     /// The same at a state of the crane and its forces.
@@ -58,44 +53,20 @@ impl dyn DynCrane + '_ {
     }
 
     /// As `internal_forces_at`, with cylinders that push with the force of their pressures, which are among the states `x` of forces.
-    pub fn internal_forces_of(&self, t: f64, motion: [&[f64]; 3], x: &[f64]) -> Vec<Wrench> {
-        let [q, v, _] = motion;
+    pub fn internal_forces_of(&self, moment: &StateAt<'_>, a: &[f64]) -> Vec<Wrench> {
         let mut pushes = vec![0.0; self.description().cylinders.len()];
-        if let Some(oil) = Oil::at(self, &StateAt { t, q, v, x }) {
+        if let Some(oil) = Oil::at(self, moment) {
             for (index, state, _) in &oil.cylinders {
                 pushes[*index] = state.force;
             }
         }
-        let closed = force_states::motion_at(self, &StateAt { t, q, v, x });
-        self.internal_forces_with(t, motion, &pushes, closed.multipliers())
+        let closed = force_states::motion_at(self, moment);
+        self.internal_forces_with(moment.t, [moment.q, moment.v, a], &pushes, closed.multipliers())
     }
 
-    /// The guess for the present parameters, [`statics::guess`], with loops closed, if they can be.
-    pub fn guess(&self) -> Vec<f64> {
-        let mut q = statics::guess_dyn(self);
-        let open = q.clone();
-        let mut loops = Loops::new(self);
-        if loops.assemble(self, &mut q, &mut |q, r, x| self.solve_mass(q, r, x)).is_err() { open } else { q }
-    }
-
-    /// Static equilibrium from the guess: [`statics::Problem`]. If feet lift and no pose is
-    /// stable, it names the supports over which the crane tips.
+    /// Static equilibrium from the guess: [`statics::Problem`].
     pub fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium {
-        statics::with_tipped_status(self, 0.0, &self.guess(), statics::Problem::of(self).settings(settings).solve())
-    }
-
-    /// Equilibrium with the drives at their positions at time `t`, from pose `q`: [`statics::Problem::at_time`], with the supports
-    /// over which the crane tips, if it does.
-    pub fn equilibrium_at(&self, t: f64, q: &[f64], settings: &statics::Settings) -> Equilibrium {
-        let found = statics::Problem::of(self).at_time(t).from(q).settings(settings).solve();
-        statics::with_tipped_status(self, t, q, found)
-    }
-
-    /// Equilibrium with the drives at given positions, from pose `q`: [`statics::Problem::holding`], with the supports over which the crane tips,
-    /// if it does. [`statics::RestSearch`] needs no pose.
-    pub fn equilibrium_holding(&self, positions: &[f64], q: &[f64], settings: &statics::Settings) -> Equilibrium {
-        let found = statics::Problem::of(self).holding(positions).from(q).settings(settings).solve();
-        statics::with_tipped_status(self, 0.0, q, found)
+        statics::Problem::of(self).settings(settings).solve()
     }
 
     /// Coefficients of small motions about a pose at rest, with shut valves and joints that stick.

@@ -17,10 +17,10 @@ use crane_quantities::ColumnKind;
 use nalgebra::{DMatrix, DMatrixViewMut, Vector3};
 
 use crate::{
-    CoordinateRole, Description,
+    CoordinateRole, Description, StateAt,
     dyn_crane::DynCrane,
     hydraulics::Hydraulics,
-    stateful_force::{Evaluated, ForceState, Row, StateAt, StatefulForce, StatefulForces},
+    stateful_force::{Evaluated, ForceState, Row, StatefulForce, StatefulForces},
 };
 
 /// τ, s: how fast a pad without a damper follows its slider.

@@ -8,13 +8,13 @@ use std::any::Any;
 use nalgebra::DMatrix;
 
 use crate::{
-    Description,
+    Description, StateAt,
     bristles::Bristles,
     dyn_crane::DynCrane,
     feet::Feet,
     hydraulics::Hydraulics,
     loop_joints::{self, Loops},
-    stateful_force::{Evaluated, ForceState, Row, StateAt, StatefulForce, StatefulForces},
+    stateful_force::{Evaluated, ForceState, Row, StatefulForce, StatefulForces},
 };
 
 /// The forces with states of a description, kind by kind: first those that span several coordinates or share states, then local ones.
@@ -333,10 +333,10 @@ pub fn impossible(description: &Description, x: &[f64]) -> Option<String> {
 ///
 /// # Panics
 /// If `x` does not have one entry per state.
-pub fn accelerations(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+pub fn accelerations(crane: &dyn DynCrane, state: &StateAt<'_>) -> (Vec<f64>, Vec<f64>) {
     let states = ForceStates::new(crane.description()).len();
-    assert_eq!(x.len(), states, "one number for each state of a force");
-    let Motion { accelerations, rates, .. } = motion_at(crane, &StateAt { t, q, v, x });
+    assert_eq!(state.x.len(), states, "one number for each state of a force");
+    let Motion { accelerations, rates, .. } = motion_at(crane, state);
     (accelerations, rates)
 }
 
@@ -360,10 +360,10 @@ impl Motion {
 
 /// The accelerations at a state; without the states of forces if they are not given.
 pub(crate) fn motion_at(crane: &dyn DynCrane, moment: &StateAt<'_>) -> Motion {
-    let &StateAt { t, q, v, x } = moment;
+    let &StateAt { q, x, .. } = moment;
     let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
     let mut loops = Loops::new(crane);
-    loops.open(crane, t, (q, v), &mut accelerations);
+    loops.open(crane, moment, &mut accelerations);
     let mut states = ForceStates::with_as_many_states(crane.description(), x.len());
     if !states.is_empty() && x.len() >= states.len() {
         states.accelerate(crane, moment, &mut rates, &mut accelerations);

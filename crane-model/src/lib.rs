@@ -75,6 +75,8 @@ pub mod sections;
 #[cfg(feature = "std")]
 pub mod stability;
 #[cfg(feature = "std")]
+mod state_at;
+#[cfg(feature = "std")]
 mod stateful_force;
 #[cfg(feature = "std")]
 pub mod statics;
@@ -95,6 +97,8 @@ pub use methods::Entry;
 pub use model::{CraneModel, LaneDynamics, Linearisation, OneByOne};
 /// The linear algebra of every signature, so that generated code needs only this crate.
 pub use nalgebra;
+#[cfg(feature = "std")]
+pub use state_at::StateAt;
 pub use stress::SectionModuli;
 #[cfg(feature = "std")]
 pub use stress::Stress;

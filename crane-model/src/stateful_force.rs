@@ -1,11 +1,11 @@
 //! Forces with states of their own: what they have in common, at which state they are evaluated, what they return, and on which
 //! coordinates they act.
 
-use std::{any::Any, fmt::Debug, ops::Range};
+use std::{any::Any, fmt::Debug};
 
 use nalgebra::DMatrixViewMut;
 
-use crate::dyn_crane::DynCrane;
+use crate::{StateAt, dyn_crane::DynCrane};
 
 /// Forces of one kind that have states. Indices of states are those among the states of this kind, except in [`StateAt`] and
 /// [`StatefulForce`], whose users see all states.
@@ -79,22 +79,6 @@ pub(crate) struct Evaluated<'a> {
     pub forces: &'a mut [StatefulForce],
     /// Their rows.
     pub rows: &'a mut [Row],
-}
-
-/// A state of a crane, with the states of its forces.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct StateAt<'a> {
-    pub t: f64,
-    pub q: &'a [f64],
-    pub v: &'a [f64],
-    pub x: &'a [f64],
-}
-
-impl StateAt<'_> {
-    /// The same with only some states of forces.
-    pub fn with_states(&self, range: Range<usize>) -> Self {
-        Self { x: &self.x[range], ..*self }
-    }
 }
 
 /// Maximum number of states of a force.

@@ -40,7 +40,7 @@ macro_rules! every_crane {
             fn $name() {
                 let mut crane = cranes::$name::Crane::default();
                 let mut lists = Lists::<{ cranes::$name::N }>::of(&crane);
-                let guess = crane_model::statics::guess(&crane);
+                let guess = SVector::from_vec(crane_model::statics::Problem::of(&crane).guess());
                 let calls = allocation_counter::measure(|| every_function(&mut crane, (&guess, &mut lists)));
                 assert_eq!(calls.count_total, 0);
             }
@@ -64,7 +64,7 @@ every_crane! {
 fn exact() {
     let mut crane = exact::Crane::default();
     let mut lists = Lists::<{ exact::N }>::of(&crane);
-    let guess = crane_model::statics::guess(&crane);
+    let guess = SVector::from_vec(crane_model::statics::Problem::of(&crane).guess());
     let calls = allocation_counter::measure(|| every_function(&mut crane, (&guess, &mut lists)));
     assert_eq!(calls.count_total, 0);
 }

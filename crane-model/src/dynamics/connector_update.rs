@@ -13,7 +13,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::{
-    Tension,
+    StateAt, Tension,
     dyn_crane::{DynCrane, DynSystem},
     interleaved,
 };
@@ -83,8 +83,7 @@ impl ConnectorUpdate {
     pub fn factorise(
         &mut self,
         crane: &dyn DynCrane,
-        t: f64,
-        (q, v): (&[f64], &[f64]),
+        &StateAt { t, q, v, .. }: &StateAt<'_>,
         c: f64,
         factors: &mut dyn DynSystem,
     ) {
@@ -134,7 +133,7 @@ impl ConnectorUpdate {
     }
 
     /// Whether at a state a connector resists much more or much less than where the system was factorised.
-    pub fn switched(&mut self, crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64])) -> bool {
+    pub fn switched(&mut self, crane: &dyn DynCrane, &StateAt { t, q, v, .. }: &StateAt<'_>) -> bool {
         if self.rows.is_empty() {
             return false;
         }

@@ -2,7 +2,7 @@
 
 use crane_quantities::ColumnKind;
 
-use crate::{Description, Tension, Text, column::column_name, dyn_crane::DynCrane};
+use crate::{Description, StateAt, Tension, Text, column::column_name, dyn_crane::DynCrane};
 
 /// The contacts of a crane: one-sided supports, end stops, ropes and other points on the ground, in this order.
 pub struct Contacts {
@@ -51,7 +51,12 @@ impl Contacts {
 
     /// Gives `take` an indicator of each contact, in order: negative while the contact is closed, positive while it is open. That of a foot is
     /// its gap, m; the others are the negative force, N or N m, or 1 where there is none, so they jump when a contact begins.
-    pub fn indicators(&mut self, crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), mut take: impl FnMut(f64)) {
+    pub fn indicators(
+        &mut self,
+        crane: &dyn DynCrane,
+        &StateAt { t, q, v, .. }: &StateAt<'_>,
+        mut take: impl FnMut(f64),
+    ) {
         let of_force = |force: f64| if force == 0.0 { 1.0 } else { -force.abs() };
         if !self.feet.is_empty() {
             crane.support_gaps(q, v, &mut self.gaps);

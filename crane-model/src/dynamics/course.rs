@@ -11,7 +11,7 @@ use super::{
     settings::divided,
 };
 use crate::memory::{Visit, visit_count, visit_numbers};
-use crate::{ConditionInfo, dyn_crane::DynCrane};
+use crate::{ConditionInfo, StateAt, dyn_crane::DynCrane};
 
 /// The conditions of events that have not happened.
 #[derive(Clone)]
@@ -43,18 +43,17 @@ impl Conditions {
     }
 
     /// Whether each holds at a state.
-    fn evaluate(&self, crane: &dyn DynCrane, t: f64, state: [&[f64]; 3]) -> Vec<bool> {
+    fn evaluate(&self, crane: &dyn DynCrane, moment: &StateAt<'_>) -> Vec<bool> {
         if self.all.is_empty() {
             return Vec::new();
         }
-        let [q, v, x] = state;
-        let row = (self.quantities.at)(crane, t, (q, v), x);
+        let row = (self.quantities.at)(crane, moment);
         self.all.iter().map(|(_, column, condition)| condition.is_met(row[*column])).collect()
     }
 
     /// Notes a later state; returns whether an event is due there.
-    fn note(&mut self, crane: &dyn DynCrane, t: f64, state: [&[f64]; 3]) -> bool {
-        let now = self.evaluate(crane, t, state);
+    fn note(&mut self, crane: &dyn DynCrane, moment: &StateAt<'_>) -> bool {
+        let now = self.evaluate(crane, moment);
         let is_due = self.due(&now).next().is_some();
         *(if is_due { &mut self.holds } else { &mut self.held }) = now;
         is_due
@@ -227,7 +226,7 @@ impl Course {
             self.done.energies[3] += present.energies_of(&sample).total() - before;
         }
         // What an event changes at once makes others due.
-        if self.conditions.note(present, sample.t, [sample.q, sample.v, sample.x]) {
+        if self.conditions.note(present, &sample) {
             self.due.extend(self.conditions.take());
         }
         Ok(())
@@ -250,11 +249,7 @@ impl Course {
         if !at_once {
             let n = present.size();
             let is_awaited = conditions.times.contains(&0.0);
-            let happens = &mut |t: f64, motion: &[f64]| {
-                let (q, rest) = motion.split_at(n);
-                let (v, x) = rest.split_at(n);
-                conditions.note(present, t, [q, v, x])
-            };
+            let happens = &mut |t: f64, motion: &[f64]| conditions.note(present, &StateAt::of(t, n, motion));
             let asked = is_awaited.then_some(happens as Happens<'_>);
             if planned.is_some() {
                 integration.end_step_at_result();

@@ -7,9 +7,9 @@
 
 use crate::memory::{Visit, visit_numbers};
 use crate::{
+    StateAt,
     dyn_crane::DynCrane,
     force_states::{ForceStates, loops_on_rigid_drives},
-    stateful_force::StateAt,
 };
 
 /// Integrals along an audited motion: work of the drives and winches, energy that the dampers dissipated, work of the loads.

@@ -17,7 +17,7 @@ use super::{
     stops::Stops,
 };
 use crate::{
-    CoordinateRole, CraneModel, Description, LaneDynamics, ParameterError,
+    CoordinateRole, CraneModel, Description, LaneDynamics, ParameterError, StateAt,
     dyn_crane::{Block, DynBlock, DynCrane, Instance},
     force_states::ForceStates,
     loop_joints::Loops,
@@ -308,20 +308,7 @@ impl<'a> Batch<'a> {
             for (lane, _) in results.iter().enumerate().filter(|(_, result)| result.is_ok()) {
                 self.lane(lane, &self.q, &mut q);
                 self.lane(lane, &self.v, &mut v);
-                observe(
-                    lane,
-                    &Sample {
-                        t: begin,
-                        q: &q,
-                        v: &v,
-                        x: &[],
-                        work: 0.0,
-                        dissipated: 0.0,
-                        load_work: 0.0,
-                        event_work: 0.0,
-                        event_times: &[],
-                    },
-                );
+                observe(lane, &Sample::new(StateAt { t: begin, q: &q, v: &v, x: &[] }, &[]));
             }
             if results.iter().all(Result::is_err) {
                 break;

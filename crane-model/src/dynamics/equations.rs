@@ -6,10 +6,10 @@ use super::{
 };
 use crate::memory::{Visit, visit_count};
 use crate::{
+    StateAt,
     dyn_crane::DynCrane,
     force_states::ForceStates,
     loop_joints::{Loops, Open},
-    stateful_force::StateAt,
 };
 
 /// A crane, the references of its motions, and the number of evaluations of its accelerations.
@@ -79,11 +79,6 @@ impl<'a> Equations<'a> {
         self.loops.visit(visit);
     }
 
-    /// The states of forces in a motion.
-    pub fn force_states<'m>(&self, motion: &'m [f64]) -> &'m [f64] {
-        &motion[2 * self.n..]
-    }
-
     /// Converts a motion to deviations from the references.
     pub fn make_relative(&mut self, t: f64, motion: &mut [f64]) {
         self.references.make_relative(self.crane, t, self.n, motion);
@@ -94,17 +89,17 @@ impl<'a> Equations<'a> {
         self.references.add(self.crane, t, 1.0, self.n, motion);
     }
 
-    /// Pose and rates of a motion given relative to the references.
-    pub fn state(&mut self, t: f64, motion: &[f64]) -> (&[f64], &[f64]) {
+    /// The state of a motion given relative to the references.
+    pub fn state<'s>(&'s mut self, t: f64, motion: &'s [f64]) -> StateAt<'s> {
         self.state.copy_from_slice(&motion[..2 * self.n]);
         self.references.add(self.crane, t, 1.0, self.n, &mut self.state);
-        self.state.split_at(self.n)
+        StateAt { x: &motion[2 * self.n..], ..StateAt::of(t, self.n, &self.state) }
     }
 
     /// Accelerations at a pose and its rates.
     pub fn accelerate(&mut self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
         self.evaluations += 1;
-        self.loops.open(self.crane, t, (q, v), out);
+        self.loops.open(self.crane, &StateAt { t, q, v, x: &[] }, out);
         self.loops.close(out);
         finite(out)
     }
@@ -164,12 +159,12 @@ impl<'a> Equations<'a> {
     fn evaluate(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
         let n = self.n;
         self.evaluations += 1;
-        let (q, v) = self.state.split_at(n);
+        let state = StateAt { x: &motion[2 * n..], ..StateAt::of(t, n, &self.state) };
         let (_, rest) = out.split_at_mut(n);
         let (accelerations, rest) = rest.split_at_mut(n);
-        self.loops.open(self.crane, t, (q, v), accelerations);
+        self.loops.open(self.crane, &state, accelerations);
         if !self.force_states.is_empty() {
-            self.force_states.accelerate(self.crane, &StateAt { t, q, v, x: &motion[2 * n..] }, rest, accelerations);
+            self.force_states.accelerate(self.crane, &state, rest, accelerations);
             finite(rest)?;
         }
         self.loops.close(accelerations);

@@ -17,10 +17,10 @@
 use nalgebra::{DVector, Vector3};
 
 use super::{Cause, InitialState, Sample, Settings, Stopped};
-use crate::{Description, EventInfo, JoinsInfo, Moment, ParameterError, dyn_crane::DynCrane};
+use crate::{Description, EventInfo, JoinsInfo, Moment, ParameterError, StateAt, dyn_crane::DynCrane};
 
 /// Gives the results of a crane at a time, s, at a pose with rates, and with the states of forces.
-pub type ResultsAt = fn(&dyn DynCrane, f64, (&[f64], &[f64]), &[f64]) -> Vec<f64>;
+pub type ResultsAt = fn(&dyn DynCrane, &StateAt<'_>) -> Vec<f64>;
 
 /// The results at a state, to which conditions refer.
 #[derive(Clone, Copy, Debug)]

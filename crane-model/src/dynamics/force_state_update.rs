@@ -14,9 +14,10 @@
 use nalgebra::DMatrix;
 
 use crate::{
+    StateAt,
     dyn_crane::DynCrane,
     force_states::ForceStates,
-    stateful_force::{Row, STATES, StateAt, StatefulForce},
+    stateful_force::{Row, STATES, StatefulForce},
 };
 
 /// The crane's forces that have states, evaluated at a state of the crane, and their contribution to the system there.

@@ -15,6 +15,7 @@ use super::{
 };
 use crate::memory::{Visit, visit_count, visit_flag, visit_numbers};
 use crate::{
+    StateAt,
     dyn_crane::DynCrane,
     force_states::ForceStates,
     loop_joints::{Loops, Open},
@@ -248,10 +249,13 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
 
     /// The last result.
     pub fn sample(&self) -> Sample<'_> {
-        let (q, rest) = self.motion.split_at(self.crane.size());
-        let (v, x) = rest.split_at(q.len());
         let [work, dissipated, load_work] = self.energy.as_ref().map_or([0.0; INTEGRALS], |energy| energy.values);
-        Sample { t: self.time, q, v, x, work, dissipated, load_work, event_work: 0.0, event_times: &[] }
+        Sample {
+            work,
+            dissipated,
+            load_work,
+            ..Sample::new(StateAt::of(self.time, self.crane.size(), &self.motion), &[])
+        }
     }
 
     /// The next step that reaches a result ends there.

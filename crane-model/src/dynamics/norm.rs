@@ -2,7 +2,9 @@
 
 use super::{equations::Equations, references::References};
 use crate::memory::Visit;
-use crate::{CoordinateKind, dyn_crane::DynCrane, force_states::ForceStates, rt::lanes::f64x8, statics::guess_dyn};
+use crate::{
+    CoordinateKind, StateAt, dyn_crane::DynCrane, force_states::ForceStates, rt::lanes::f64x8, statics::open_guess,
+};
 
 /// Weight of an error of a rate relative to one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
 const RATE: f64 = 0.2;
@@ -78,7 +80,7 @@ impl Norm {
         let mut stiffness_and_damping = vec![[0.0; 2]; n];
         crane.joint_stiffness_and_damping(&mut stiffness_and_damping);
         // At the guess, drives with an effort limit are far from it.
-        let stiffness = crane.drive_stiffness(&guess_dyn(crane));
+        let stiffness = crane.drive_stiffness(&open_guess(crane));
         let effort = |(drive, (coordinate, stiffness)): (usize, (usize, f64))| {
             let [_, damping] = stiffness_and_damping[coordinate];
             let drive = (!references.coordinates().any(|relative| relative == coordinate)).then_some(drive);
@@ -98,7 +100,7 @@ impl Norm {
         }
         let (crane, n) = (equations.crane, self.n);
         let mut weight = vec![0.0; n];
-        let (q, v) = equations.state(t, motion);
+        let StateAt { q, v, .. } = equations.state(t, motion);
         crane.bias(q, &vec![0.0; n], &mut weight);
         let (q, v) = (q.to_vec(), v.to_vec());
         let (coordinates, cranes) = (&crane.description().coordinates, crane.cranes());

@@ -184,8 +184,7 @@ impl Formula for Stages<'_> {
 
     fn attempt(&mut self, equations: &mut Equations<'_>, step: &mut Step) -> Result<(), NotFinite> {
         let h = step.length;
-        let x = equations.force_states(&step.start);
-        self.system.factorise(step.t, equations.state(step.t, &step.start), x, h * GAMMA);
+        self.system.factorise(&equations.state(step.t, &step.start), h * GAMMA);
         self.system.solve(&step.slopes[0], &mut self.u[0]);
         self.places[0].copy_from_slice(&step.start);
         for i in 1..STAGES {
@@ -203,7 +202,7 @@ impl Formula for Stages<'_> {
         equations.slope(step.reached(), &step.end, &mut step.slopes[1])?;
         // Where a stiff law starts or stops acting, J is that of one side only: the method and the embedded formula damp away the same
         // terms, and their difference does not show the error. The rates are then compared with those of the trapezoidal rule.
-        if self.system.switched(step.reached(), equations.state(step.reached(), &step.end)) {
+        if self.system.switched(&equations.state(step.reached(), &step.end)) {
             let (n, [before, after]) = (equations.n, &step.slopes);
             for i in n..2 * n {
                 let change = step.end[i] - step.start[i];

@@ -1,19 +1,15 @@
 //! Samples and summary of a run.
 
-use super::{EffortAccuracy, Statistics};
+use std::ops::Deref;
 
-/// One moment of a run.
+use super::{EffortAccuracy, Statistics};
+use crate::StateAt;
+
+/// One moment of a run: its state, also by [`Deref`], and the energies that crossed the boundary of the crane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<'a> {
-    /// Time, s.
-    pub t: f64,
-    /// Generalized coordinates, m and rad.
-    pub q: &'a [f64],
-    /// Their rates, m/s and rad/s.
-    pub v: &'a [f64],
-    /// States of forces: of the oil of cylinders with a valve, in the order of [`hydraulics`](crate::hydraulics), Pa and shares; then
-    /// deflections of bristles, m and rad.
-    pub x: &'a [f64],
+    /// The state of the crane.
+    pub state: StateAt<'a>,
     /// Work of the drives' motions and of cylinders since t = 0, J; 0 without audit.
     pub work: f64,
     /// Energy that the dampers dissipated since t = 0, J; 0 without audit.
@@ -24,6 +20,21 @@ pub struct Sample<'a> {
     pub event_work: f64,
     /// When the events [on conditions](crate::Description::conditions) happened, s, in their order; 0 for those that have not.
     pub event_times: &'a [f64],
+}
+
+impl<'a> Sample<'a> {
+    /// Of a run without audit.
+    pub fn new(state: StateAt<'a>, event_times: &'a [f64]) -> Self {
+        Self { state, work: 0.0, dissipated: 0.0, load_work: 0.0, event_work: 0.0, event_times }
+    }
+}
+
+impl<'a> Deref for Sample<'a> {
+    type Target = StateAt<'a>;
+
+    fn deref(&self) -> &StateAt<'a> {
+        &self.state
+    }
 }
 
 /// Summary of a run.

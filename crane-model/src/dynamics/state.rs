@@ -3,6 +3,8 @@
 use nalgebra::SVector;
 
 use crate::CraneModel;
+#[cfg(feature = "std")]
+use crate::StateAt;
 
 /// An acceleration is not finite: a body has no inertia, or the pose contains NaN. Or forces have states of their own, or
 /// joints close loops, which single steps do not support: an `Integration` does.
@@ -63,11 +65,23 @@ pub struct InitialState {
 }
 
 #[cfg(feature = "std")]
+impl From<StateAt<'_>> for InitialState {
+    fn from(StateAt { q, v, x, .. }: StateAt<'_>) -> Self {
+        Self { q: q.to_vec(), v: v.to_vec(), x: x.to_vec() }
+    }
+}
+
+#[cfg(feature = "std")]
 impl InitialState {
     /// Pose `q` at rest.
     pub fn at_rest(q: Vec<f64>) -> Self {
         let v = vec![0.0; q.len()];
         Self { q, v, x: Vec::new() }
+    }
+
+    /// The state at a time, s.
+    pub fn at_time(&self, t: f64) -> StateAt<'_> {
+        StateAt { t, q: &self.q, v: &self.v, x: &self.x }
     }
 }
 

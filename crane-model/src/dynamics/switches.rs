@@ -7,7 +7,7 @@
 
 use super::{contacts::Contacts, equations::Equations};
 use crate::memory::{Visit, visit_flag, visit_flags};
-use crate::{dyn_crane::DynCrane, force_states::ForceStates, stateful_force::StateAt};
+use crate::{StateAt, dyn_crane::DynCrane, force_states::ForceStates};
 
 /// Which laws are watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,14 +139,13 @@ impl Switches {
     /// Writes the branches at a time and at `motion` into the first or the second list.
     fn evaluate(&mut self, equations: &mut Equations<'_>, watched: Watched, t: f64, list: usize) {
         let crane = equations.crane;
-        let (q, v) = equations.state(t, &self.motion);
+        let state = equations.state(t, &self.motion);
         let branches = &mut self.branches[list];
         branches.clear();
-        self.contacts.indicators(crane, t, (q, v), |indicator| branches.push(indicator > 0.0));
-        self.limits.branches(crane, t, (q, v), branches);
+        self.contacts.indicators(crane, &state, |indicator| branches.push(indicator > 0.0));
+        self.limits.branches(crane, &state, branches);
         if watched == Watched::All {
-            let x = &self.motion[2 * q.len()..][..self.states.len()];
-            self.states.branches(crane, &StateAt { t, q, v, x }, branches);
+            self.states.branches(crane, &state.with_states(0..self.states.len()), branches);
         }
     }
 }
@@ -191,7 +190,7 @@ impl DriveLimits {
     }
 
     /// Appends for each drive whether it pushes, and pulls, as much as it can.
-    fn branches(&mut self, crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), out: &mut Vec<bool>) {
+    fn branches(&mut self, crane: &dyn DynCrane, &StateAt { t, q, v, .. }: &StateAt<'_>, out: &mut Vec<bool>) {
         if self.drives.is_empty() {
             return;
         }

@@ -20,10 +20,9 @@ use super::{
 };
 use crate::memory::{Visit, visit_count};
 use crate::{
-    Description,
+    Description, StateAt,
     dyn_crane::{DynCrane, DynSystem},
     loop_joints::Loops,
-    stateful_force::StateAt,
 };
 
 /// `A + cD̂ + c²K̂` of a crane, factorised.
@@ -112,14 +111,15 @@ impl<'a> System<'a> {
     }
 
     /// Factorises at a state of the crane and its forces.
-    pub fn factorise(&mut self, t: f64, (q, v): (&[f64], &[f64]), x: &[f64], c: f64) {
+    pub fn factorise(&mut self, state: &StateAt<'_>, c: f64) {
+        let &StateAt { t, q, v, .. } = state;
         self.c = c;
         let [nonlinear, _] = &mut self.nonlinear;
         self.crane.nonlinear_stiffness_and_damping(t, q, v, nonlinear);
         for ((joint, linear), nonlinear) in self.joints.iter_mut().zip(&self.linear).zip(nonlinear) {
             *joint = [linear[0] + nonlinear[0], linear[1] + nonlinear[1]];
         }
-        self.force_states.evaluate(self.crane, &StateAt { t, q, v, x }, c, &mut self.joints);
+        self.force_states.evaluate(self.crane, state, c, &mut self.joints);
         let [base, _] = &mut self.base.matrices;
         base.evaluate(self.crane, q, v);
         for (i, [stiffness, damping]) in self.joints.iter().enumerate() {
@@ -127,7 +127,7 @@ impl<'a> System<'a> {
             self.added_inertia[i] = damping * c + stiffness * (c * c);
         }
         self.factors.factorise(q, &self.added_inertia, self.base.added_inertia(c));
-        self.connectors.factorise(self.crane, t, (q, v), c, self.factors.as_mut());
+        self.connectors.factorise(self.crane, state, c, self.factors.as_mut());
         let Self { factors, connectors, .. } = self;
         self.force_states.factorise(c, &mut |right, solution| {
             factors.solve(right, solution);
@@ -154,16 +154,16 @@ impl<'a> System<'a> {
 
     /// Whether at a state some law acts that did not act where the system was factorised, or vice versa: a stiffness or a damping
     /// is less than half or more than twice what it was.
-    pub fn switched(&mut self, t: f64, (q, v): (&[f64], &[f64])) -> bool {
+    pub fn switched(&mut self, state: &StateAt<'_>) -> bool {
         if !self.switches {
             return false;
         }
         let [before, now] = &mut self.nonlinear;
-        self.crane.nonlinear_stiffness_and_damping(t, q, v, now);
+        self.crane.nonlinear_stiffness_and_damping(state.t, state.q, state.v, now);
         let mut of_joints = before.as_flattened().iter().zip(now.as_flattened());
         of_joints.any(|(before, now)| differs(*before, *now))
-            || self.base.switched(self.crane, q, v)
-            || self.connectors.switched(self.crane, t, (q, v))
+            || self.base.switched(self.crane, state.q, state.v)
+            || self.connectors.switched(self.crane, state)
     }
 
     /// u for a right-hand side `(P, G, R)`.

@@ -35,10 +35,10 @@ mod valve;
 use nalgebra::{DMatrixViewMut, Vector3};
 
 use crate::{
-    CylinderInfo, Description,
+    CylinderInfo, Description, StateAt,
     dyn_crane::DynCrane,
     loop_joints,
-    stateful_force::{Evaluated, ForceState, Row, STATES, StateAt, StatefulForces},
+    stateful_force::{Evaluated, ForceState, Row, STATES, StatefulForces},
 };
 use cylinder::{Pump, ValveCylinder};
 pub(crate) use oil::Oil;

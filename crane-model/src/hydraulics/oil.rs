@@ -2,9 +2,9 @@
 
 use super::{CylinderState, Hydraulics};
 use crate::{
-    Description,
+    Description, StateAt,
     dyn_crane::DynCrane,
-    stateful_force::{Evaluated, STATES, StateAt, StatefulForce, StatefulForces},
+    stateful_force::{Evaluated, STATES, StatefulForce, StatefulForces},
 };
 
 /// The cylinders with a valve: index among all cylinders, state, and position of the spool; flow (m³/s), power (W) and pressure (Pa) of the

@@ -1,7 +1,7 @@
 //! Servos: which cylinders have one, and their valves slightly open at rest.
 
 use super::{Hydraulics, STATES, ValveCylinder, valve::flows};
-use crate::{Description, dyn_crane::DynCrane, stateful_force::StateAt};
+use crate::{Description, StateAt, dyn_crane::DynCrane};
 
 /// How far beyond its overlap a slightly opened valve is open, as a fraction of the spool's travel.
 const SLIGHTLY: f64 = 1e-9;

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::Directions;
-use crate::{dyn_crane::DynCrane, force_states::motion_at, modes::independent_motions, stateful_force::StateAt};
+use crate::{StateAt, dyn_crane::DynCrane, dynamics::InitialState, force_states::motion_at, modes::independent_motions};
 
 /// Step along a coordinate or its rate, m, rad, m/s or rad/s: rounding and curvature are then some 1e-8 of an entry.
 pub(super) const STEP: f64 = 1e-6;
@@ -55,9 +55,7 @@ pub(super) fn state_matrix(
 
 /// A state near another one.
 pub(super) struct State {
-    q: Vec<f64>,
-    v: Vec<f64>,
-    x: Vec<f64>,
+    state: InitialState,
     /// How far, in the unit of the state that changed.
     pub step: f64,
 }
@@ -67,7 +65,7 @@ impl State {
     pub fn moved(moment: &StateAt<'_>, directions: &Directions, index: usize, scales: &[f64], sign: f64) -> Self {
         let n = directions.q.ncols();
         let mut step = sign * STEP;
-        let mut state = Self { q: moment.q.to_vec(), v: moment.v.to_vec(), x: moment.x.to_vec(), step };
+        let mut state = InitialState::from(*moment);
         let column = |matrix: &DMatrix<f64>, of: usize| matrix.column(of).iter().copied().collect::<Vec<f64>>();
         if index < n {
             state.q = moved(moment.q, &column(&directions.q, index), step);
@@ -78,12 +76,11 @@ impl State {
             step *= scales[index - 2 * n];
             state.x[index - 2 * n] += step;
         }
-        state.step = step;
-        state
+        Self { state, step }
     }
 
     pub fn at(&self, t: f64) -> StateAt<'_> {
-        StateAt { t, q: &self.q, v: &self.v, x: &self.x }
+        self.state.at_time(t)
     }
 }
 

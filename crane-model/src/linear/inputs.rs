@@ -4,13 +4,12 @@ use nalgebra::DVector;
 
 use super::{NoModel, Output};
 use crate::{
-    ColumnKind, CoordinateInfo, CoordinateRole, Description,
+    ColumnKind, CoordinateInfo, CoordinateRole, Description, StateAt,
     dyn_crane::DynCrane,
     force_states::motion_at,
     hydraulics,
     modes::StateSpace,
     results::{Column, column_name, drive_effort, quantities_at, quantities_with},
-    stateful_force::StateAt,
 };
 
 /// What acts on a crane.
@@ -239,7 +238,7 @@ fn of_spec(
     // They bend elsewhere than accelerations: the pressures of a cylinder where it begins to push.
     let of_outputs = slopes(value, |change| {
         changed.set_input(index, Some(value + change));
-        let all = quantities_at(changed.as_ref(), moment.t, (moment.q, moment.v), moment.x);
+        let all = quantities_at(changed.as_ref(), moment);
         DVector::from_iterator(outputs.len(), outputs.iter().map(|output| all[output.index]))
     });
     Ok(Effect { states, outputs: of_outputs.iter().copied().collect() })

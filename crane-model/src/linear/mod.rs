@@ -27,12 +27,12 @@ use crane_quantities::ColumnKind;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::{
+    StateAt,
     column::columns_of,
     dyn_crane::DynCrane,
     force_states::{self, ForceStates, states_of_small_motions},
     modes::{DampedMode, NoModes, SmallMotions, StateSpace, eigenvalues, grows},
     results::{Column, quantities},
-    stateful_force::StateAt,
 };
 
 /// Accelerations up to this, m/s² and rad/s², are those of a crane at rest.

@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 
 use super::{Directions, differences::State};
 use crate::{
+    StateAt,
     dyn_crane::DynCrane,
     results::{Column, quantities, quantities_with},
-    stateful_force::StateAt,
 };
 
 /// A quantity of a run, except time.

@@ -44,7 +44,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use crate::{CoordinateKind, Count, LoopEquationInfo, LoopJointInfo, dyn_crane::DynCrane, interleaved};
+use crate::{CoordinateKind, Count, LoopEquationInfo, LoopJointInfo, StateAt, dyn_crane::DynCrane, interleaved};
 use independence::Independence;
 use of_crane::OfCrane;
 use profile::Profile;
@@ -384,7 +384,7 @@ impl Loops {
     }
 
     /// Writes the accelerations of the open chain, and prepares to [`close`](Self::close) its loops.
-    pub fn open(&mut self, crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), accelerations: &mut [f64]) {
+    pub fn open(&mut self, crane: &dyn DynCrane, &StateAt { t, q, v, .. }: &StateAt<'_>, accelerations: &mut [f64]) {
         if self.is_empty() {
             crane.forward_dynamics(t, q, v, accelerations);
             return;

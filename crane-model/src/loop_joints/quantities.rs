@@ -3,7 +3,7 @@
 use nalgebra::{DVector, Vector3};
 
 use super::{Loops, add_to_wrenches, at_rest, generalized, on_rigid_drives, required};
-use crate::{ConnectorInfo, CylinderInfo, Description, Tension, Wrench, dyn_crane::DynCrane, wrench};
+use crate::{ConnectorInfo, CylinderInfo, Description, StateAt, Tension, Wrench, dyn_crane::DynCrane, wrench};
 
 /// # Panics
 /// If `q`, `v` or `a` does not have as many numbers as the crane has coordinates.
@@ -12,7 +12,7 @@ impl dyn DynCrane + '_ {
     pub fn accelerations_at(&self, t: f64, q: &[f64], v: &[f64]) -> DVector<f64> {
         let mut accelerations = vec![0.0; self.size()];
         let mut loops = Loops::new(self);
-        loops.open(self, t, (q, v), &mut accelerations);
+        loops.open(self, &StateAt { t, q, v, x: &[] }, &mut accelerations);
         loops.close(&mut accelerations);
         accelerations.into()
     }
@@ -22,7 +22,7 @@ impl dyn DynCrane + '_ {
         let mut efforts = self.open_drive_efforts(t, q, v);
         let mut loops = Loops::new(self);
         if !loops.is_empty() && !self.description().prescribed().is_empty() {
-            let open = self.numbers(|out| loops.open(self, t, (q, v), out));
+            let open = self.numbers(|out| loops.open(self, &StateAt { t, q, v, x: &[] }, out));
             let mut change = open.clone();
             loops.close(&mut change);
             change.iter_mut().zip(&open).for_each(|(change, open)| *change -= open);

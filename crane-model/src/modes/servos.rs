@@ -7,10 +7,10 @@
 
 use super::{DampedMode, NoModes, SmallMotions, StateSpace, grows, held::add_cylinders, verdict::GROWTH};
 use crate::{
+    StateAt,
     dyn_crane::DynCrane,
     force_states::ForceStates,
     hydraulics::{Servo, servos},
-    stateful_force::StateAt,
 };
 
 /// Relative accuracy of the largest stable gain.

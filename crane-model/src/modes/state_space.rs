@@ -4,10 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::{DampedMode, NoModes, SmallMotions, damped::eigenpairs};
 use crate::{
-    dyn_crane::DynCrane,
-    force_states::ForceStates,
-    model::state_blocks,
-    stateful_force::{StateAt, StatefulForce},
+    StateAt, dyn_crane::DynCrane, force_states::ForceStates, model::state_blocks, stateful_force::StatefulForce,
 };
 
 /// The state matrix M of `d/dt [δq; δq̇; δx] = M [δq; δq̇; δx]`: the coordinates that can move, their rates, and the states of forces.

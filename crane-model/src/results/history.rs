@@ -1,6 +1,6 @@
 //! Internal forces and tipping lines over a run.
 
-use crate::{
+use crate::{StateAt, 
     Description, SectionModuli, Wrench,
     dyn_crane::DynCrane,
     dynamics::Phases,
@@ -41,13 +41,14 @@ impl Instant {
     }
 
     /// In motion.
-    fn moving(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Self {
-        let (a, _) = force_states::accelerations(crane, t, (q, v), x);
+    fn moving(crane: &dyn DynCrane, moment: &StateAt<'_>) -> Self {
+        let &StateAt { t, q, v, .. } = moment;
+        let (a, _) = force_states::accelerations(crane, moment);
         Self {
             t,
             lines: lines(crane, t, q, v, &a),
             x: crane.section_places_at(q),
-            wrenches: crane.internal_forces_of(t, [q, v, &a], x),
+            wrenches: crane.internal_forces_of(moment, &a),
         }
     }
 
@@ -90,7 +91,7 @@ pub fn instants<'a>(crane: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64
     let mut phases = Phases::of(crane);
     rows.map(|row| {
         let x: Vec<f64> = oil.iter().map(|&index_of| row[index_of]).collect();
-        Instant::moving(phases.at_row(row), row[0], (&row[1..=n], &row[n + 1..=2 * n]), &x)
+        Instant::moving(phases.at_row(row), &StateAt { t: row[0], q: &row[1..=n], v: &row[n + 1..=2 * n], x: &x })
     })
     .collect()
 }

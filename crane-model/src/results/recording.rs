@@ -6,14 +6,13 @@ use crane_quantities::{ColumnKind, PartColumn};
 use nalgebra::Vector3;
 
 use crate::{
-    ConnectorInfo, CoordinateKind, Description, LoopJointInfo, bristles,
+    ConnectorInfo, CoordinateKind, Description, LoopJointInfo, StateAt, bristles,
     dyn_crane::{DynCrane, Energies},
     dynamics::{Phases, Quantities, Sample},
     feet::Slid,
     force_states::{self, ForceStates},
     hydraulics::{self, Oil},
     results::{Column, Table, column_name, cylinders},
-    stateful_force::StateAt,
 };
 
 /// Records the samples of a run of a crane.
@@ -78,17 +77,15 @@ impl<'a> Recording<'a> {
 
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
-        let &Sample { t, q, v, x, event_times, .. } = sample;
-        let moment = StateAt { t, q, v, x };
-        let exerted = Exerted::in_motion(self.phases.at(t, event_times), &moment);
+        let exerted = Exerted::in_motion(self.phases.at(sample.t, sample.event_times), sample);
         self.push_exerted(sample, &exerted);
     }
 
     fn push_exerted(&mut self, sample: &Sample<'_>, exerted: &Exerted) {
-        let &Sample { t, q, v, x, work, dissipated, load_work, event_work, event_times } = sample;
+        let &Sample { state, work, dissipated, load_work, event_work, event_times } = sample;
         let mut row = Vec::with_capacity(self.table.columns.len());
-        let present = self.phases.at(t, event_times);
-        let energies = push_quantities(present, self.extent, &StateAt { t, q, v, x }, exerted, &mut row);
+        let present = self.phases.at(state.t, event_times);
+        let energies = push_quantities(present, self.extent, &state, exerted, &mut row);
         if let Some(energy) = energies.as_ref().map(Energies::total) {
             if self.table.rows.is_empty() {
                 self.energy_at_start = energy;
@@ -113,9 +110,7 @@ impl<'a> Recording<'a> {
         let crane = self.phases.at(t, event_times);
         let (v, x) = (vec![0.0; q.len()], ForceStates::new(crane.description()).holding(crane, t, q));
         let exerted = Exerted::at_rest(crane, t, q);
-        let sample =
-            Sample { t, q, v: &v, x: &x, work: 0.0, dissipated: 0.0, load_work: 0.0, event_work: 0.0, event_times };
-        self.push_exerted(&sample, &exerted);
+        self.push_exerted(&Sample::new(StateAt { t, q, v: &v, x: &x }, event_times), &exerted);
     }
 
     /// The row of the last sample; empty without one.
@@ -161,10 +156,8 @@ impl<'a> FleetRecording<'a> {
 
     /// Adds a sample.
     pub fn push(&mut self, sample: &Sample<'_>) {
-        let &Sample { t, q, v, x, .. } = sample;
-        let moment = StateAt { t, q, v, x };
-        let exerted = Exerted::in_motion(self.fleet, &moment);
-        push_quantities(self.fleet, Extent::Peaks, &moment, &exerted, &mut self.numbers);
+        let exerted = Exerted::in_motion(self.fleet, sample);
+        push_quantities(self.fleet, Extent::Peaks, sample, &exerted, &mut self.numbers);
     }
 
     /// Number of cranes.
@@ -189,8 +182,8 @@ impl<'a> FleetRecording<'a> {
 
 /// The quantities at a state of the crane and its oil: all columns of a [`Recording`] except those of its audit, in the order of
 /// [`quantities`].
-pub fn quantities_at(crane: &dyn DynCrane, t: f64, (q, v): (&[f64], &[f64]), x: &[f64]) -> Vec<f64> {
-    quantities_with(crane, &StateAt { t, q, v, x }, &[])
+pub fn quantities_at(crane: &dyn DynCrane, moment: &StateAt<'_>) -> Vec<f64> {
+    quantities_with(crane, moment, &[])
 }
 
 /// The quantities at a state, for conditions of events.

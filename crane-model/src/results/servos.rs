@@ -6,7 +6,7 @@ use crate::{
     dyn_crane::DynCrane,
     dynamics::Phases,
     modes::{UnstableServo, unstable_servos},
-    statics::Settings,
+    statics::Problem,
 };
 
 /// Servos that are unstable about a pose at rest, with the drives as at time `t`, s.
@@ -25,7 +25,7 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     let mut phases = Phases::of(crane);
     for row in [first, last] {
         let crane = phases.at_row(row);
-        let equilibrium = crane.equilibrium_at(row[0], &row[1..=n], &Settings::default());
+        let equilibrium = Problem::of(crane).at_time(row[0]).from(&row[1..=n]).solve();
         if !equilibrium.is_stable() {
             continue;
         }

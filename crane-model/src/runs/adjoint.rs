@@ -42,7 +42,7 @@ pub fn record_adjoint(
     let (mut states, mut trace) = (Vec::new(), None);
     let mut recorded = record_by(crane, start, settings, |recording| {
         let mut recorder = Recorder { recording, states: &mut states, proceed: &mut *proceed };
-        let found = Trace::new(crane, &start.state(), probes, settings, &QUANTITIES, &mut recorder)?;
+        let found = Trace::new(crane, &start.state, probes, settings, &QUANTITIES, &mut recorder)?;
         Ok(trace.insert(found).run())
     })?;
     let rows = &recorded.table.rows;

@@ -44,7 +44,7 @@ pub fn large_effort(crane: &dyn DynCrane, start: &Start, settings: &Settings) ->
     let duration = TRIED * step;
     let some = Settings { duration, output: duration, ..*settings };
     // Whether they succeed is seen when the run is taken.
-    let _ = crane.simulate(&start.state(), &some, &mut |_: &Sample<'_>| ControlFlow::Continue(()));
+    let _ = crane.simulate(&start.state, &some, &mut |_: &Sample<'_>| ControlFlow::Continue(()));
     let seconds = begin.map(|begin| begin.elapsed().as_secs_f64() / TRIED * steps);
     Some(Effort { steps, step, seconds })
 }

@@ -317,7 +317,7 @@ fn alone(crane: &dyn DynCrane, row: &Case, settings: &Settings, off: &dyn Fn() -
 /// Runs a crane from its start.
 fn alone_from(crane: &dyn DynCrane, start: &Start, settings: &Settings, off: &dyn Fn() -> bool) -> Outcome {
     let mut gathering = Gathering::new(crane, off);
-    let run = Simulation::with_events(crane, &results::QUANTITIES, start.state(), settings).watch(&mut gathering);
+    let run = Simulation::with_events(crane, &results::QUANTITIES, start.state.clone(), settings).watch(&mut gathering);
     gathering.finish(run)
 }
 
@@ -374,7 +374,7 @@ fn as_fleet(
     off: &dyn Fn() -> bool,
 ) -> Vec<Outcome> {
     let ready: Vec<_> = rows.iter().map(|row| if off() { Err(Reason::Cancelled) } else { ready(crane, row) }).collect();
-    let members: Vec<_> = ready.iter().flatten().map(|(crane, start)| (crane.as_ref(), start.state())).collect();
+    let members: Vec<_> = ready.iter().flatten().map(|(crane, start)| (crane.as_ref(), start.state.clone())).collect();
     let models: Vec<&dyn DynCrane> = members.iter().map(|(crane, _)| *crane as &dyn DynCrane).collect();
     let fleet = if is_worth_a_fleet(members.len(), cranes) { crane.fleet(&models) } else { None };
     let together = fleet.and_then(|fleet| {
@@ -401,7 +401,7 @@ fn side_by_side(crane: &dyn DynCrane, rows: &[Case], settings: &Settings) -> Vec
     let mut gatherings = Vec::new();
     for ((row_crane, start), row) in ready.iter().zip(rows).filter_map(|(ready, row)| Some((ready.as_ref().ok()?, row)))
     {
-        members.push(Member { parameters: row.parameters.clone(), start: start.state() });
+        members.push(Member { parameters: row.parameters.clone(), start: start.state.clone() });
         gatherings.push(Gathering::new(row_crane.as_ref(), &|| false));
     }
     let runs = crane.simulate_ensemble(&members, settings, &mut |member, sample| gatherings[member].take(sample));

@@ -32,7 +32,7 @@ pub fn record_gradients(
     let mut gradients = vec![Vec::new(); slopes.count()];
     let recorded = record_by(crane, start, settings, |recording| {
         let mut recorder = Recorder { recording, gradients: &mut gradients, proceed };
-        gradients::simulate(crane, &start.state(), slopes, along, settings, &QUANTITIES, &mut recorder)
+        gradients::simulate(crane, &start.state, slopes, along, settings, &QUANTITIES, &mut recorder)
     })?;
     Ok((recorded, gradients))
 }

@@ -6,7 +6,7 @@ use crate::{
     dynamics::Method,
     modes::{self, DampedMode},
     stability::{Limit, limit},
-    statics::Settings,
+    statics::Problem,
 };
 
 /// Number of poses during the manoeuvre at which the step is checked: 2 ms each for 25 coordinates.
@@ -54,7 +54,7 @@ pub fn manoeuvre(crane: &dyn DynCrane, start: &Start, count: u16) -> Result<Vec<
     if start.rests {
         for index in 1..=count {
             let t = description.duration * f64::from(index) / f64::from(count);
-            let equilibrium = crane.equilibrium_at(t, &q, &Settings::default());
+            let equilibrium = Problem::of(crane).at_time(t).from(&q).solve();
             if !equilibrium.is_stable() {
                 break;
             }

@@ -7,7 +7,7 @@ use crate::{
     dyn_crane::DynCrane,
     dynamics::{Phases, event_times},
     results::{Instant, Recording, Table},
-    statics::Settings,
+    statics::Problem,
 };
 
 /// A crane at rest at some times of a run, with the drives, the loads and the parameters of these times.
@@ -36,7 +36,7 @@ impl QuasiStatic {
         for (_, row) in run.rows.iter().enumerate().filter(|(index, _)| index % every == 0 || *index == last) {
             let (t, times) = (row[0], event_times(crane.description(), row));
             let present = phases.at(t, times);
-            let equilibrium = present.equilibrium_at(t, &q, &Settings::default());
+            let equilibrium = Problem::of(present).at_time(t).from(&q).solve();
             if equilibrium.is_stable() {
                 q = equilibrium.q;
                 recording.push_rest(t, &q, times);

@@ -69,7 +69,7 @@ fn exchanged_within_tolerance(crane: &dyn DynCrane, start: &Start, settings: &dy
     if !settings.method.is_adaptive() {
         return 0.0;
     }
-    let state = start.state();
+    let state = start.state.clone();
     let forces = crane.bias_at(&state.q, &vec![0.0; state.q.len()]);
     settings.tolerance * forces.iter().map(|force| force.abs()).sum::<f64>()
 }
@@ -109,7 +109,7 @@ pub fn record(
 ) -> Result<Recorded, Failed> {
     record_by(crane, start, settings, |recording| {
         let mut recorder = Recorder { recording, proceed };
-        dynamics::Simulation::with_events(crane, &results::QUANTITIES, start.state(), settings).watch(&mut recorder)
+        dynamics::Simulation::with_events(crane, &results::QUANTITIES, start.state.clone(), settings).watch(&mut recorder)
     })
 }
 

@@ -1,5 +1,7 @@
 //! Start of a run.
 
+use std::ops::{Deref, DerefMut};
+
 use super::{Failed, Reason};
 use crate::{
     dyn_crane::DynCrane,
@@ -26,15 +28,11 @@ pub const GUESS_MOVING: &str = "guess, with given rates";
 /// Start of a crane whose pose is given.
 pub const GIVEN: &str = "as given";
 
-/// Pose and rates from which a run starts.
+/// The state from which a run starts, also by [`Deref`], and where it comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// The pose, m and rad.
-    pub q: Vec<f64>,
-    /// Its rates, m/s and rad/s.
-    pub v: Vec<f64>,
-    /// States of forces; if empty, those that hold the pose at rest.
-    pub x: Vec<f64>,
+    /// The state.
+    pub state: InitialState,
     /// In words: [`EQUILIBRIUM`], [`GUESS`], or the start that was requested.
     pub what: String,
     /// Whether the crane would stay there with its drives stopped.
@@ -70,9 +68,7 @@ impl Start {
     /// Those of [`Start::of`], if no pose is given; [`Reason::OpenStart`].
     pub fn with(crane: &dyn DynCrane, t: f64, q: Option<&[f64]>, v: Option<&[f64]>) -> Result<Self, Failed> {
         let mut start = match q {
-            Some(q) => {
-                Self { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: GIVEN.to_owned(), rests: false }
-            }
+            Some(q) => Self::given(InitialState::at_rest(q.to_vec())),
             None => Self::of(crane)?,
         };
         if let Some(v) = v {
@@ -81,7 +77,8 @@ impl Start {
                 GUESS => GUESS_MOVING,
                 _ => GIVEN,
             };
-            start = Self { v: v.to_vec(), what: what.to_owned(), rests: false, ..start };
+            let state = InitialState { v: v.to_vec(), ..start.state };
+            start = Self { what: what.to_owned(), ..Self::given(state) };
         }
         if q.is_some() || v.is_some() {
             start.close_state(crane, t)?;
@@ -94,7 +91,7 @@ impl Start {
     /// # Errors
     /// [`Reason::OpenStart`]: it is further away.
     pub fn close_state(&mut self, crane: &dyn DynCrane, t: f64) -> Result<(), Failed> {
-        close_state(crane, t, (&mut self.q, &mut self.v))
+        close_state(crane, t, (&mut self.state.q, &mut self.state.v))
             .map_err(|gap| Reason::OpenStart { gap, partly: false }.of(&crane.description().name))
     }
 
@@ -103,7 +100,7 @@ impl Start {
     /// # Errors
     /// [`Reason::OpenStart`]: what is given leaves no way to close a loop.
     pub fn close(&mut self, crane: &dyn DynCrane, t: f64, given: &Given) -> Result<(), Failed> {
-        close_start(crane, t, (&mut self.q, &mut self.v), given)
+        close_start(crane, t, (&mut self.state.q, &mut self.state.v), given)
             .map_err(|gap| Reason::OpenStart { gap, partly: true }.of(&crane.description().name))
     }
 
@@ -120,17 +117,30 @@ impl Start {
         if !q.is_empty() && crane.mass_matrix_at(&q).cholesky().is_none() {
             return Err(Reason::MassMatrix.of(name));
         }
-        Ok(Self { v: vec![0.0; q.len()], q, x: Vec::new(), what: EQUILIBRIUM.to_owned(), rests: true })
+        Ok(Self { state: InitialState::at_rest(q), what: EQUILIBRIUM.to_owned(), rests: true })
+    }
+
+    /// A given state.
+    pub fn given(state: InitialState) -> Self {
+        Self { state, what: GIVEN.to_owned(), rests: false }
     }
 
     /// The guess of a crane.
     pub fn guess(crane: &dyn DynCrane) -> Self {
-        let q = crane.guess();
-        Self { v: vec![0.0; q.len()], q, x: Vec::new(), what: GUESS.to_owned(), rests: false }
+        Self { state: InitialState::at_rest(crane.guess()), what: GUESS.to_owned(), rests: false }
     }
+}
 
-    /// Pose and rates.
-    pub fn state(&self) -> InitialState {
-        InitialState { q: self.q.clone(), v: self.v.clone(), x: self.x.clone() }
+impl Deref for Start {
+    type Target = InitialState;
+
+    fn deref(&self) -> &InitialState {
+        &self.state
+    }
+}
+
+impl DerefMut for Start {
+    fn deref_mut(&mut self) -> &mut InitialState {
+        &mut self.state
     }
 }

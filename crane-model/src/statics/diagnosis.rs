@@ -4,7 +4,7 @@ use std::fmt;
 
 use nalgebra::DVector;
 
-use super::{Equilibrium, Status, equations::Equations, guess_dyn, newton::rounding_hides, overloaded::overloaded};
+use super::{Equilibrium, Status, equations::Equations, open_guess, newton::rounding_hides, overloaded::overloaded};
 use crate::{
     CoordinateKind, CoordinateRole, Text,
     dyn_crane::DynCrane,
@@ -104,7 +104,7 @@ pub enum Diagnosis {
 impl Diagnosis {
     /// Of an equilibrium that is not stable.
     pub fn of(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Self {
-        let guess = guess_dyn(crane);
+        let guess = open_guess(crane);
         if let Some(cylinder) = unassembled_at(crane, &guess) {
             return Self::Unassembled { cylinder };
         }

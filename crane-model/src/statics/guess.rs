@@ -1,24 +1,27 @@
 //! Start of the static solution.
 
-use nalgebra::{SVector, Vector3};
+use nalgebra::Vector3;
 
-use crate::{
-    Count, CraneModel, Tension,
-    dyn_crane::{DynCrane, Instance},
-};
+use crate::{Count, Tension, dyn_crane::DynCrane, loop_joints::Loops};
 
 /// A guess within this distance of the drive's position is equal to it, m or rad: above rounding, below the differences that matter in a
 /// spec.
 const ROUNDING: f64 = 1e-9;
 
-/// The description's guess, and what follows from the parameters of the crane: drives are where their motions begin, and coordinates that follow
-/// others where their couplings are without force.
-pub fn guess<const N: usize, C: CraneModel<N>>(crane: &C) -> SVector<f64, N> {
-    SVector::from_vec(guess_dyn(&Instance::<N, _>(crane.clone())))
+impl dyn DynCrane + '_ {
+    /// The guess for the present parameters: that of the description, with drives where their motions begin, coordinates that follow others where their
+    /// couplings are without force, and loops closed, if they can be. m and rad.
+    pub fn guess(&self) -> Vec<f64> {
+        let mut q = open_guess(self);
+        let open = q.clone();
+        let mut loops = Loops::new(self);
+        if loops.assemble(self, &mut q, &mut |q, r, x| self.solve_mass(q, r, x)).is_err() { open } else { q }
+    }
 }
 
-/// As [`guess`], of a crane of any size.
-pub fn guess_dyn(crane: &dyn DynCrane) -> Vec<f64> {
+/// The description's guess, and what follows from the parameters of the crane: drives are where their motions begin, and coordinates that follow
+/// others where their couplings are without force. Loops may be open.
+pub(crate) fn open_guess(crane: &dyn DynCrane) -> Vec<f64> {
     let mut motions = vec![[0.0; 2]; crane.description().drives.len()];
     crane.drive_motions(0.0, &mut motions);
     let mut q = guess_with(crane, motions.iter().map(|[position, _]| *position));

@@ -18,11 +18,10 @@ mod tipped;
 
 pub use diagnosis::Diagnosis;
 pub use equilibrium::{Equilibrium, Iteration};
-pub use guess::{guess, guess_dyn};
+pub(crate) use guess::open_guess;
 pub(crate) use overloaded::{REACHED, Reached, reached};
 pub use rest::RestSearch;
 pub(crate) use rest::advance;
 pub use settings::Settings;
 pub use solve::Problem;
 pub use status::Status;
-pub(crate) use tipped::with_tipped_status;

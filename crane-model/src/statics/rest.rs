@@ -90,7 +90,7 @@ impl RestSearch<'_> {
     }
 
     fn search(&self, q: &[f64], settings: &Settings) -> Equilibrium {
-        self.crane.equilibrium_holding(self.positions, q, settings)
+        Problem::of(self.crane).holding(self.positions).from(q).settings(settings).solve()
     }
 }
 

@@ -3,8 +3,8 @@
 use nalgebra::DVector;
 
 use super::{
-    Equilibrium, Iteration, Settings, Status, continuation, equations::Equations, guess_dyn, newton,
-    residual_scale::ResidualScale, tangent::Tangent,
+    Equilibrium, Iteration, Settings, Status, continuation, equations::Equations, newton,
+    residual_scale::ResidualScale, tangent::Tangent, tipped::with_tipped_status,
 };
 use crate::{
     CoordinateKind,
@@ -20,7 +20,7 @@ use crate::{
 /// |---|---|
 /// | [`at_time`](Self::at_time): time of drives, loads and winches | t = 0 |
 /// | [`holding`](Self::holding): positions of the drives | those of their motions |
-/// | [`from`](Self::from): pose at which the search starts | [`super::guess()`] |
+/// | [`from`](Self::from): pose at which the search starts | [`dyn DynCrane::guess`](trait.DynCrane.html#method.guess) |
 /// | [`settings`](Self::settings): when it stops | [`Settings::default`] |
 #[must_use = "it is solved by `solve`"]
 pub struct Problem<'a> {
@@ -57,6 +57,11 @@ impl<'a> Problem<'a> {
         Self { settings: *settings, ..self }
     }
 
+    /// The pose at which the search starts unless one is given, m and rad.
+    pub fn guess(&self) -> Vec<f64> {
+        self.crane.guess()
+    }
+
     /// Solves it.
     ///
     /// Newton–Raphson on `r(q) = ∂E_p/∂q` with `K = ∂²E_p/∂q²`: `q ← q − α K⁻¹ r`, α = 1, halved until the residual falls.
@@ -77,14 +82,21 @@ impl<'a> Problem<'a> {
     /// S. N. Chow, J. Mallet-Paret, J. A. Yorke, Finding zeroes of maps, Math. Comp. 32 (1978) 887; H. B. Keller, Numerical
     /// solution of bifurcation and nonlinear eigenvalue problems, in Applications of Bifurcation Theory, Academic Press 1977.
     ///
+    /// If feet lift and no pose is stable, the status names the supports over which the crane tips.
+    ///
     /// # Panics
     /// If the pose or the positions are not as many numbers as the crane has coordinates or drives.
     pub fn solve(&self) -> Equilibrium {
-        let mut equations = self.equations();
-        match self.from {
-            Some(q) => search(&mut equations, q, &self.settings),
-            None => search(&mut equations, &guess_dyn(&*self.crane), &self.settings),
-        }
+        let guess;
+        let from = match self.from {
+            Some(q) => q,
+            None => {
+                guess = self.crane.guess();
+                &guess
+            }
+        };
+        let found = search(&mut self.equations(), from, &self.settings);
+        with_tipped_status(&*self.crane, self.t, from, found)
     }
 
     /// `ln det K` at the pose `q`, in equilibrium or not, of the factors of Cholesky, which are a tenth of the work of a Newton step; `None` if a direction has a

@@ -45,7 +45,7 @@ pub fn check_events(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     };
     let q = equilibrium(&before).ok()?;
     let v: Vec<f64> = q.iter().map(|_| 0.02 * (2.0 * rng.f64() - 1.0)).collect();
-    let start = Start { v, q, x: Vec::new(), what: String::new(), rests: false };
+    let start = Start::given(InitialState { q, v, x: Vec::new() });
     let settings = Settings {
         duration: RUN[0],
         output: RUN[1],
@@ -54,7 +54,7 @@ pub fn check_events(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         most_steps: 60_000,
         ..Settings::of(crane.description())
     };
-    let rows = in_two_parts([&before, &after], time, &start.state(), &settings)?;
+    let rows = in_two_parts([&before, &after], time, &start.state, &settings)?;
     let table = match record(&crane, &start, &settings, &mut |_| ControlFlow::Continue(())) {
         Ok(recorded) => recorded.table,
         // What moves rigid drives or opens loops at once is refused.
@@ -133,12 +133,11 @@ fn on_condition(
 /// All quantities at the results of a run, of a motion step by step.
 fn in_steps(crane: &LiveCrane, table: &Table, start: &Start, settings: &Settings) -> Result<Vec<Vec<f64>>, Stopped> {
     let settings = Settings { duration: f64::INFINITY, ..*settings };
-    let mut motion = Motion::new(Box::new(crane.clone()), 0.0, &start.state(), &settings, None)?;
+    let mut motion = Motion::new(Box::new(crane.clone()), 0.0, &start.state, &settings, None)?;
     let mut rows = Vec::new();
     for row in &table.rows {
         let _ = motion.advance(row[0], &mut |_| ControlFlow::Continue(()))?;
-        let Sample { t, q, v, x, .. } = motion.sample();
-        rows.push(quantities_at(motion.crane(), t, (q, v), x));
+        rows.push(quantities_at(motion.crane(), &motion.sample()));
     }
     Ok(rows)
 }
@@ -188,9 +187,9 @@ struct Part<'a> {
 }
 
 impl Watch for Part<'_> {
-    fn sample(&mut self, &Sample { t, q, v, x, .. }: &Sample<'_>) -> ControlFlow<()> {
+    fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
         if (self.keeps)(t) {
-            self.rows.push(quantities_at(self.crane, t, (q, v), x));
+            self.rows.push(quantities_at(self.crane, sample));
         }
         self.end = InitialState { q: q.to_vec(), v: v.to_vec(), x: x.to_vec() };
         ControlFlow::Continue(())

@@ -413,7 +413,7 @@ fn unbalanced(when: &str, bodies: Vec<(String, f64)>, tolerance: f64) -> Vec<Str
 /// Energy, work and dissipation of the run of the spec balance, relative to the largest of them.
 fn energy_balance(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
     let description = crane.description();
-    let start = Start { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: String::new(), rests: true };
+    let start = Start { rests: true, ..Start::given(InitialState::at_rest(q.to_vec())) };
     let settings = Settings { tolerance: 1e-7, most_steps: 60_000, audit: true, ..Settings::of(description) };
     let table = match record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())) {
         Ok(recorded) => recorded.table,
@@ -460,7 +460,7 @@ fn rest_stays(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), St
     if description.loads.iter().any(|load| load.pieces > 0) || description.has_valves() {
         return None;
     }
-    let start = Start { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: String::new(), rests: true };
+    let start = Start { rests: true, ..Start::given(InitialState::at_rest(q.to_vec())) };
     let settings = Settings { duration: 2.0, output: 0.5, tolerance: 1e-7, audit: false, ..Settings::of(description) };
     let table = match record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())) {
         Ok(recorded) => recorded.table,
@@ -487,9 +487,9 @@ fn inputs_set_on_the_way(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<
     let own = Settings::of(crane.description());
     let settings = Settings { tolerance: PART[1], audit: false, most_steps: 20_000, ..own };
     let proceed = &mut |_: f64| ControlFlow::Continue(());
-    let mut start = Start { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: String::new(), rests: false };
+    let mut start = Start::given(InitialState::at_rest(q.to_vec()));
     start.close(crane, 0.0, &Given::default()).ok()?;
-    let begin = start.state();
+    let begin = start.state.clone();
     let mut steered = SteeredMotion::new(crane, 0.0, &begin, &settings, None).ok()?;
     let state = |sample: &Sample<'_>| InitialState { q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() };
     let mut end = begin;
@@ -599,7 +599,7 @@ fn damped_run_ends(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<Result
         return None;
     }
     let (_, aside, _) = state(crane, q, rng);
-    let start = Start { v: vec![0.0; q.len()], q: aside, x: Vec::new(), what: String::new(), rests: false };
+    let start = Start::given(InitialState::at_rest(aside));
     let base = Settings {
         method: Method::Bdf,
         tolerance: 1e-7,
@@ -627,7 +627,7 @@ fn efforts_at_rest(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(
     let description = crane.description();
     let whole: &dyn DynCrane = crane;
     let held = whole.drive_efforts_at_rest(q);
-    let start = Start { v: vec![0.0; q.len()], q: q.to_vec(), x: Vec::new(), what: String::new(), rests: true };
+    let start = Start { rests: true, ..Start::given(InitialState::at_rest(q.to_vec())) };
     let settings = Settings { duration: 1e-6, output: 1e-6, audit: false, ..Settings::of(description) };
     let table = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())).ok()?.table;
     let size = held.iter().fold(0.0, |size: f64, effort| size.max(effort.abs()));

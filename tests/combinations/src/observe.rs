@@ -409,7 +409,7 @@ impl Found {
     /// Columns of a run at rest, and with `run` at all its results.
     fn results(&mut self, crane: &LiveCrane, q: &[f64], run: bool) -> Result<(), String> {
         let rest = vec![0.0; q.len()];
-        let start = Start { v: rest, q: q.to_vec(), x: Vec::new(), what: String::new(), rests: true };
+        let start = Start { rests: true, ..Start::given(InitialState { q: q.to_vec(), v: rest, x: Vec::new() }) };
         let base =
             Settings { tolerance: STEP, most_steps: MOST_STEPS, audit: false, ..Settings::of(crane.description()) };
         // The first result of a run is the crane at rest, with the states of its oil and bristles.

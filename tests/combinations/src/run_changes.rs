@@ -48,7 +48,7 @@ pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let q = equilibrium(&crane).ok()?;
     // In motion: at rest, shut valves are where their laws have a kink.
     let v: Vec<f64> = q.iter().map(|_| RUN[2] * (2.0 * rng.f64() - 1.0)).collect();
-    let mut start = Start { q, v, x: Vec::new(), what: String::new(), rests: false };
+    let mut start = Start::given(InitialState { q, v, x: Vec::new() });
     start.close(&crane, 0.0, &Given::default()).ok()?;
     let mut along: Vec<Along> = (0..crane.parameters().len()).map(Along::Parameter).collect();
     rng.shuffle(&mut along);

@@ -189,7 +189,7 @@ fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<Mot
         ));
     }
     let t = at.or(found.time).unwrap_or(0.0);
-    let (a, _) = force_states::accelerations(crane, t, (&q, &v), &x);
+    let (a, _) = force_states::accelerations(crane, &StateAt { t, q: &q, v: &v, x: &x });
     let greatest = a.iter().fold(0.0, |greatest: f64, a| greatest.max(a.abs()));
     let cautions = (greatest > STEADY)
         .then(|| format!("not steady: accelerations reach {greatest:.2e} m/s² or rad/s², so matrices and modes are valid only at this moment"));
@@ -201,7 +201,7 @@ fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<Mot
 /// The pose at rest of a crane with loops, valves or joints that stick.
 fn of_rest(crane: &dyn DynCrane, t: f64) -> Outcome<Motion> {
     let settings = statics::Settings::default();
-    let rest = crane.equilibrium_at(t, &crane.equilibrium(&settings).q, &settings);
+    let rest = statics::Problem::of(crane).at_time(t).from(&crane.equilibrium(&settings).q).settings(&settings).solve();
     if !rest.rests() {
         let title = format!("{}: {}", crane.description().name, rest.status);
         return Err(Problem::failed(title, "`crane statics` says more, and what to change"));
@@ -232,7 +232,7 @@ fn of_steady(live: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
     let settings = statics::Settings::default();
     let mut rest = crane.equilibrium(&settings);
     if t != 0.0 {
-        rest = crane.equilibrium_at(t, &rest.q, &settings);
+        rest = statics::Problem::of(crane).at_time(t).from(&rest.q).settings(&settings).solve();
     }
     let start = if rest.status == statics::Status::NotConverged { crane.guess() } else { rest.q };
     let found = steady(live, t, &start, &held).map_err(|refused| {

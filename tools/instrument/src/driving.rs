@@ -105,8 +105,8 @@ impl Driving {
         let _ = motion.advance(to.max(self.t), &mut enough).map_err(|stopped| stopped.to_string())?;
         let sample = motion.sample();
         self.t = sample.t;
-        self.state = InitialState { q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() };
-        let row = quantities_at(&self.crane, sample.t, (sample.q, sample.v), sample.x);
+        self.state = sample.state.into();
+        let row = quantities_at(&self.crane, &sample);
         let lines = instants(&self.crane, std::iter::once(&row)).pop().map_or_else(Vec::new, |instant| instant.lines);
         // Where nothing stabilises there is no margin: null.
         let margins: Vec<Value> =

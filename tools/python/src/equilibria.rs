@@ -42,11 +42,11 @@ impl Found {
             positions[drive] = position;
         }
         let equilibrium = match (at, from) {
-            (_, Some(from)) if !held.is_empty() => crane.equilibrium_holding(&positions, from, settings),
+            (_, Some(from)) if !held.is_empty() => statics::Problem::of(crane).holding(&positions).from(from).settings(settings).solve(),
             (_, None) if !held.is_empty() => RestSearch { crane, positions: &positions }.find(None),
             (None, None) => crane.equilibrium(settings),
-            (at, Some(from)) => crane.equilibrium_at(at.unwrap_or(0.0), from, settings),
-            (Some(t), None) => crane.equilibrium_at(t, &crane.guess(), settings),
+            (at, Some(from)) => statics::Problem::of(crane).at_time(at.unwrap_or(0.0)).from(from).settings(settings).solve(),
+            (Some(t), None) => statics::Problem::of(crane).at_time(t).from(&crane.guess()).settings(settings).solve(),
         };
         let diagnosis = (!equilibrium.is_stable()).then(|| Diagnosis::of(crane, &equilibrium));
         let q = &equilibrium.q;

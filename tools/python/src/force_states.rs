@@ -13,9 +13,6 @@ use crate::evaluation::{Array, Given, STATE, State};
 use crate::mistakes::{Invalid, warn_of_rows};
 use crate::parallel::map_rows;
 
-/// A row of a state: t, q, v and x.
-type Row<'a> = (f64, &'a [f64], &'a [f64], &'a [f64]);
-
 #[pymethods]
 impl Crane {
     /// (..., n + states): accelerations and rates of the states of forces; `Crane.state_derivatives` separates them.
@@ -30,9 +27,8 @@ impl Crane {
         invalid: &str,
     ) -> Array<'py> {
         let width = self.live.size() + force_states::columns(self.live.description()).len();
-        self.of_states(py, State { t, ..State::moving(q, v) }, (x, invalid), width, |crane, (t, q, v, x)| {
-            let crane: &dyn DynCrane = crane;
-            let (accelerations, rates) = force_states::accelerations(crane, t, (q, v), x);
+        self.of_states(py, State { t, ..State::moving(q, v) }, (x, invalid), width, |crane, state| {
+            let (accelerations, rates) = force_states::accelerations(crane, state);
             [accelerations, rates].concat()
         })
     }
@@ -53,8 +49,8 @@ impl Crane {
             .map(|column| column.name)
             .collect();
         let state = State { t, ..State::moving(q, v) };
-        let all = self.of_states(py, state, (x, invalid), names.len(), |crane, (t, q, v, x)| {
-            quantities_at(crane, t, (q, v), x)
+        let all = self.of_states(py, state, (x, invalid), names.len(), |crane, state| {
+            quantities_at(crane, state)
         })?;
         Ok((all.into_any(), names))
     }
@@ -68,7 +64,7 @@ impl Crane {
         state: State<'_, 'py>,
         (x, invalid): (Given<'_, 'py>, &str),
         width: usize,
-        compute: impl Fn(&LiveCrane, Row<'_>) -> Vec<f64> + Sync,
+        compute: impl Fn(&LiveCrane, &StateAt<'_>) -> Vec<f64> + Sync,
     ) -> Array<'py> {
         let arguments = self.read(state)?;
         let states = force_states::columns(self.live.description());
@@ -101,7 +97,7 @@ impl Crane {
             } else {
                 x
             };
-            compute(&crane, (t, q, v, x))
+            compute(&crane, &StateAt { t, q, v, x })
         })?;
         warn_of_rows(py, &bad, &joined.shape)?;
         array(py, rows.concat(), &joined.shape, &[width])

@@ -214,7 +214,7 @@ impl Motions {
         let mut all: [Vec<f64>; 5] = Default::default();
         for row in 0..self.rows.len() {
             let now = self.row(row);
-            let Sample { t, q, v, x, work, dissipated, load_work, .. } = now.motion.sample();
+            let Sample { state: StateAt { t, q, v, x }, work, dissipated, load_work, .. } = now.motion.sample();
             for (all, own) in all.iter_mut().zip([&[t], q, v, x, &[work, dissipated, load_work]]) {
                 all.extend_from_slice(own);
             }
@@ -331,7 +331,7 @@ impl Motions {
                         Err(stopped) => Some(Failure::Stopped(stopped)),
                     };
                 }
-                let Sample { t, q, v, .. } = motion.sample();
+                let StateAt { t, q, v, .. } = motion.sample().state;
                 path.push(t);
                 path.extend_from_slice(q);
                 path.extend_from_slice(v);

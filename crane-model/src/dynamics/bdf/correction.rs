@@ -2,6 +2,7 @@
 
 use super::{GAMMAS, ORDER, SAME, history::History};
 use crate::{
+    StateAt,
     dyn_crane::DynCrane,
     dynamics::{equations::Equations, motion::add, state::NotFinite, system::System},
     memory::{Visit, visit_numbers},
@@ -71,17 +72,17 @@ impl<'a> Correction<'a> {
         self.c = history.h / GAMMAS[history.order];
         equations.references.step_within(history.t, self.t);
         let n = equations.n;
-        let (q, v) = equations.state(self.t, &self.end);
+        let state = equations.state(self.t, &self.end);
         if std::mem::take(&mut self.factors.is_restored) {
             self.factors.factorise(&mut self.system, n);
         }
-        let reuses_factors = self.factors.serve(q, self.c) && !self.system.switched(self.t, (q, v));
+        let reuses_factors = self.factors.serve(state.q, self.c) && !self.system.switched(&state);
         if !reuses_factors {
             let Place { t, motion, c, .. } = &mut self.factors;
             (*t, *c) = (self.t, self.c);
-            motion[..n].copy_from_slice(q);
-            motion[n..2 * n].copy_from_slice(v);
-            motion[2 * n..].copy_from_slice(&self.end[2 * n..]);
+            motion[..n].copy_from_slice(state.q);
+            motion[n..2 * n].copy_from_slice(state.v);
+            motion[2 * n..].copy_from_slice(state.x);
             self.factors.factorise(&mut self.system, n);
         }
         reuses_factors
@@ -131,7 +132,6 @@ impl Place {
 
     /// Factorises the system of a crane with n coordinates.
     fn factorise(&self, system: &mut System<'_>, n: usize) {
-        let (state, x) = self.motion.split_at(2 * n);
-        system.factorise(self.t, state.split_at(n), x, self.c);
+        system.factorise(&StateAt::of(self.t, n, &self.motion), self.c);
     }
 }

@@ -1,7 +1,7 @@
 //! Derivatives of columns of results.
 
 use super::{Around, Covector, DIFFERENCE, Numbers, OfMotion, TOGETHER, difference, size_of};
-use crate::{dyn_crane::DynCrane, dynamics::ResultsAt, force_states::ForceStates};
+use crate::{StateAt, dyn_crane::DynCrane, dynamics::ResultsAt, force_states::ForceStates};
 
 /// A column of coordinates and their rates, which follow the time: its place in a motion.
 fn of_motion(n: usize, column: usize) -> Option<usize> {
@@ -10,10 +10,7 @@ fn of_motion(n: usize, column: usize) -> Option<usize> {
 
 /// Results of a crane, as a function of a motion.
 fn results(n: usize, t: f64, at: ResultsAt) -> impl FnMut(&dyn DynCrane, &[f64]) -> Vec<f64> {
-    move |crane, motion| {
-        let ((q, v), x) = (motion[..2 * n].split_at(n), &motion[2 * n..]);
-        at(crane, t, (q, v), x)
-    }
+    move |crane, motion| at(crane, &StateAt::of(t, n, motion))
 }
 
 /// Derivatives of the columns at a motion along a direction, in which the motion changes by `change`. `here`: the columns.

@@ -58,7 +58,7 @@ use super::{
     Course, Happening, InitialState, Integration, Quantities, Run, Sample, Settings, Stepper, Stopped, course::Observe,
 };
 pub use crate::feet::FeetSlopes;
-use crate::{EventInfo, ParameterError, dyn_crane::DynCrane, force_states::ForceStates};
+use crate::{EventInfo, ParameterError, StateAt, dyn_crane::DynCrane, force_states::ForceStates};
 pub use adjoint::{Trace, Weights};
 pub use columns::{columns_along, columns_by};
 use follower::Follower;
@@ -301,7 +301,7 @@ fn pass<S: Stepper + ?Sized>(
     integration: &Integration<'_, S>,
     happening: Happening,
 ) -> Result<(Box<dyn DynCrane>, Passage), Stopped> {
-    let Sample { t, q, v, x, .. } = integration.sample();
+    let StateAt { t, q, v, x } = integration.sample().state;
     let after = course.after(present, happening)?;
     let condition = course.quantities_and_value(happening);
     course.pass([present, after.as_ref()], integration, happening)?;

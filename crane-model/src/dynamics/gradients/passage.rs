@@ -19,7 +19,7 @@ use super::{
     size_of,
 };
 use crate::{
-    EventInfo,
+    EventInfo, StateAt,
     dyn_crane::DynCrane,
     dynamics::{
         Happening, Quantities, ResultsAt,
@@ -76,8 +76,7 @@ impl Passage {
             let at = |by: f64| {
                 let mut moved = own.motion.clone();
                 add(&mut moved, by, &own.rates[0]);
-                let ((q, v), x) = (moved[..2 * n].split_at(n), &moved[2 * n..]);
-                (own.results)(before, t + by, (q, v), x)[column]
+                (own.results)(before, &StateAt::of(t + by, n, &moved))[column]
             };
             let change = at(step) - at(-step);
             // The comparison is false for NaN.

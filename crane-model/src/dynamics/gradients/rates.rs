@@ -4,11 +4,11 @@ use nalgebra::DMatrix;
 
 use super::{At, CylinderSlopes, FeetSlopes, Slopes};
 use crate::{
+    StateAt,
     dyn_crane::{DynCrane, DynSystem},
     dynamics::{NotFinite, state::finite},
     force_states::ForceStates,
     loop_joints::Loops,
-    stateful_force::StateAt,
 };
 
 /// F of a crane: of a motion `[q, v, x]` in full, not relative to the motions of drives.
@@ -66,10 +66,10 @@ impl<'a> Rates<'a> {
     /// F at a time.
     pub fn at(&mut self, t: f64, motion: &[f64]) -> Result<Vec<f64>, NotFinite> {
         let n = self.n;
-        let ([q, v], x) = (halves(&motion[..2 * n]), &motion[2 * n..]);
-        self.loops.open(self.crane, t, (q, v), &mut self.accelerations);
+        let moment = StateAt::of(t, n, motion);
+        let v = moment.v;
+        self.loops.open(self.crane, &moment, &mut self.accelerations);
         if !self.force_states.is_empty() {
-            let moment = StateAt { t, q, v, x };
             let Self { force_states, crane, of_states, by_states, accelerations, .. } = self;
             force_states.accelerate_with_slopes(*crane, &moment, of_states, Some(by_states), accelerations);
         }

@@ -237,11 +237,11 @@ impl Instance {
         }
         if self.moment.is_none() {
             let crane = self.crane.as_ref();
-            let Start { mut q, mut v, rests, .. } =
+            let Start { state: InitialState { mut q, mut v, .. }, rests, .. } =
                 Start::of(crane).map_err(|failed| Fault::Error(format!("{failed}; {}", failed.advice())))?;
             if rests && self.begin != 0.0 {
-                let equilibrium = crane.equilibrium_at(self.begin, &q, &statics::Settings::default());
-                q = Start::at(crane, &equilibrium).map_err(Fault::error)?.q;
+                let equilibrium = statics::Problem::of(crane).at_time(self.begin).from(&q).solve();
+                q = Start::at(crane, &equilibrium).map_err(Fault::error)?.state.q;
             }
             crane.prescribe(self.begin, &mut q, &mut v);
             let x = ForceStates::new(crane.description()).holding(crane, self.begin, &q);
@@ -342,18 +342,18 @@ impl Instance {
 
     fn quantities(&mut self) -> Result<&[f64], Fault> {
         self.settle()?;
-        let Self { crane, moment: Some(Moment { t, q, v, x }), quantities, .. } = self else {
+        let Self { crane, moment: Some(moment), quantities, .. } = self else {
             return Err(Fault::nowhere());
         };
-        Ok(quantities.get_or_insert_with(|| results::quantities_at(crane.as_ref(), *t, (q, v), x)))
+        Ok(quantities.get_or_insert_with(|| results::quantities_at(crane.as_ref(), &moment.state())))
     }
 
     fn accelerations(&mut self) -> Result<&(Vec<f64>, Vec<f64>), Fault> {
         self.settle()?;
-        let Self { crane, moment: Some(Moment { t, q, v, x }), accelerations, .. } = self else {
+        let Self { crane, moment: Some(moment), accelerations, .. } = self else {
             return Err(Fault::nowhere());
         };
-        Ok(accelerations.get_or_insert_with(|| force_states::accelerations(crane.as_ref(), *t, (q, v), x)))
+        Ok(accelerations.get_or_insert_with(|| force_states::accelerations(crane.as_ref(), &moment.state())))
     }
 
     /// Sets variables by their references; only parameters and inputs can be set. Rules that involve several parameters are

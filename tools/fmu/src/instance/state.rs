@@ -30,6 +30,13 @@ pub(super) struct Moment {
     pub(super) x: Vec<f64>,
 }
 
+impl Moment {
+    /// The state of the crane.
+    pub fn state(&self) -> StateAt<'_> {
+        StateAt { t: self.t, q: &self.q, v: &self.v, x: &self.x }
+    }
+}
+
 impl State {
     /// The state as bytes: the token; then numbers, which are parameters; inputs, NaN if not set; marks of events, infinite before
     /// the first step; and, if known, time, pose, rates and

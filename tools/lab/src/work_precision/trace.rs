@@ -146,7 +146,7 @@ pub fn timed(crane: &dyn DynCrane, start: &[f64], settings: &Settings, repeats: 
     let run = loop {
         samples.clear();
         let begin = Instant::now();
-        let run = crane.simulate(&start, settings, &mut |&Sample { t, q, v, .. }| {
+        let run = crane.simulate(&start, settings, &mut |&Sample { state: StateAt { t, q, v, .. }, .. }| {
             samples.push((t, q.to_vec(), v.to_vec()));
             ControlFlow::Continue(())
         })?;

@@ -223,7 +223,7 @@ pub fn sensitivity_near(
     q: &[f64],
 ) -> Result<Sensitivity, Failed> {
     let any: &dyn DynCrane = crane;
-    at_rest(crane, parameters, *settings, &any.equilibrium_at(0.0, q, &statics::Settings::default()))
+    at_rest(crane, parameters, *settings, &statics::Problem::of(any).from(q).solve())
 }
 
 /// At an equilibrium that was found.

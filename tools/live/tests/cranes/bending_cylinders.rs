@@ -199,7 +199,7 @@ fn statics_hold_cylinders_at_given_positions() {
     let (crane, other) = (boom("{hold: 0.4}"), boom("{hold: 0.7}"));
     let (crane, other): (&dyn DynCrane, &dyn DynCrane) = (&crane, &other);
     let expected = rest(other);
-    let found = crane.equilibrium_holding(&[0.0, 0.7], &rest(crane), &statics::Settings::default());
+    let found = statics::Problem::of(crane).holding(&[0.0, 0.7]).from(&rest(crane)).solve();
     assert!(found.is_stable(), "{found}");
     for (found, expected) in found.q.iter().zip(&expected) {
         assert!((found - expected).abs() < 1e-10, "{found} for {expected}");

@@ -140,7 +140,7 @@ fn the_energy_balance_of_a_light_crane_is_looked_at() {
          guess: {arm_psi: 0.5}\nrun: {duration: 4, step: 0.2, output: 0.2}\n",
     );
     let settings = Settings { method: Method::Rk4, audit: true, ..Settings::of(pendulum.description()) };
-    let start = Start { v: vec![0.0], q: vec![0.5], x: Vec::new(), what: String::new(), rests: false };
+    let start = Start::given(InitialState::at_rest(vec![0.5]));
     let recorded =
         record_checked(&pendulum, &start, &settings, (false, cautions::BEND), &mut |_| ControlFlow::Continue(()));
     let cautions = recorded.unwrap_or_else(|failed| panic!("{failed}")).cautions;

@@ -151,7 +151,7 @@ fn a_pendulum_hangs_from_its_winch_at_any_time() {
     let crane = swinging("{rope: {stiffness: 1e5, motion: {quintic: {from: 2, to: 1.2, duration: 3}}}}");
     let crane: &dyn DynCrane = &crane;
     let start = rest(crane);
-    let later = crane.equilibrium_at(3.0, &start, &statics::Settings::default());
+    let later = statics::Problem::of(crane).at_time(3.0).from(&start).solve();
     assert!(later.is_stable(), "{later}");
     let length = 1.2 + 50.0 * GRAVITY / 1e5;
     assert!((later.q[1] + length).abs() < 1e-10 && later.q[0].abs() < 1e-10, "{:?}", later.q);
@@ -209,7 +209,7 @@ fn a_winch_does_the_work_of_the_weight() {
     let work = 50.0 * GRAVITY * 1.2;
     // The rope's damper dissipates the vibration that the winch's acceleration excites.
     assert!((end.1 / work - 1.0).abs() < 2e-3, "{} J instead of {work} J", end.1);
-    let later = crane.equilibrium_at(10.0, &start.q, &statics::Settings::default());
+    let later = statics::Problem::of(crane).at_time(10.0).from(&start.q).solve();
     assert!((later.q[0] - start.q[0] - 1.2).abs() < 1e-9, "{later}");
 }
 

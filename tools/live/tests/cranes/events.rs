@@ -78,7 +78,7 @@ fn a_run_that_begins_later_has_the_events_from_there() {
     ));
     let (start, settings) = (Start::of(&lift as &dyn DynCrane).expect("a start"), settings(&lift, Method::Bdf, 0.25));
     let (omega, mut times) = ((5e4_f64 / 90.0).sqrt(), Vec::new());
-    let run = Simulation::with_events(&lift, &QUANTITIES, start.state(), &settings).at_time(0.5).observe(|sample| {
+    let run = Simulation::with_events(&lift, &QUANTITIES, start.state.clone(), &settings).at_time(0.5).observe(|sample| {
         let share = if sample.t < 0.505 { 1.0 } else { (omega * (sample.t - 0.505)).cos() };
         // As above.
         assert!(

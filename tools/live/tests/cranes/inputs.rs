@@ -43,7 +43,7 @@ fn numbers(crane: &LiveCrane, t: f64) -> Vec<f64> {
     all.extend(crane.drive_motions_at(t).concat());
     all.extend([crane.energies_at(t, &q, &v).total(), crane.drive_power(t, &q, &v), crane.load_power(t, &q, &v)]);
     all.extend(crane.internal_forces_at(t, &q, &v, &v).iter().flat_map(|wrench| wrench.force.data.0[0]));
-    all.extend(crane.equilibrium_at(t, &q, &crane_model::statics::Settings::default()).q);
+    all.extend(statics::Problem::of(crane).at_time(t).from(&q).solve().q);
     all
 }
 
@@ -147,7 +147,7 @@ fn a_motion_goes_on_from_its_memory() {
     let on = |motion: &mut SteeredMotion, pull: f64| -> Vec<f64> {
         let changes = [(1, Some(0.2)), (2, Some(pull))];
         let _ = motion.advance(0.25, changes, Hold::Linear, &mut |_| ControlFlow::Continue(())).expect("it goes on");
-        let Sample { q, v, .. } = motion.sample();
+        let StateAt { q, v, .. } = motion.sample().state;
         [q, v].concat()
     };
     on(&mut motion, 300.0);

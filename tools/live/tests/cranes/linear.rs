@@ -314,11 +314,11 @@ fn a_moving_crane_on_oil_has_the_derivatives_of_its_equations() {
     )
     .unwrap();
     let slopes = |state: &[f64]| {
-        let (accelerations, rates) = force_states::accelerations(&crane, 0.0, (&state[..2], &state[2..4]), &state[4..]);
+        let (accelerations, rates) = force_states::accelerations(&crane, &StateAt::of(0.0, 2, state));
         [&state[2..4], &accelerations, &rates].concat()
     };
     let values = |state: &[f64]| {
-        let all = quantities_at(&crane, 0.0, (&state[..2], &state[2..4]), &state[4..]);
+        let all = quantities_at(&crane, &StateAt::of(0.0, 2, state));
         named(&crane, &["ram_force", "hook_x", "hook_vz"]).iter().map(|output| all[output.index]).collect::<Vec<f64>>()
     };
     let here = [&q[..], &v, &x].concat();
@@ -385,8 +385,8 @@ fn a_moving_loop_has_the_derivatives_of_its_equations() {
     assert_eq!(found.states[0].name, "crank_psi");
     let acceleration = |crank: f64, rate: f64| {
         let (q, v) = onto(crank, rate);
-        let (a, _) = force_states::accelerations(&bars, 0.0, (&q, &v), &[]);
-        let all = quantities_at(&bars, 0.0, (&q, &v), &[]);
+        let (a, _) = force_states::accelerations(&bars, &StateAt { t: 0.0, q: &q, v: &v, x: &[] });
+        let all = quantities_at(&bars, &StateAt { t: 0.0, q: &q, v: &v, x: &[] });
         let values = named(&bars, &["middle_z", "rocker_psi_rate", "crank_psi_drive_torque"]);
         [vec![a[0]], values.iter().map(|output| all[output.index]).collect()].concat()
     };

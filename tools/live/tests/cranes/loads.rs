@@ -59,7 +59,7 @@ fn a_drive_holds_a_load_that_turns_with_its_link() {
     let moment = 2.0 * 40.0 - 0.5 * 30.0 + 9.0;
     assert!((arm.drive_efforts_at_rest(&rest.q)[0] + 0.25 * moment).abs() < 1e-9);
     assert!((rest.q[0] - 0.5 - 0.25 * moment / 1e3).abs() < 1e-12);
-    let later = arm.equilibrium_at(5.0, &rest.q, &settings);
+    let later = statics::Problem::of(arm).at_time(5.0).from(&rest.q).settings(&settings).solve();
     assert!((later.q[0] - 0.5 - moment / 1e3).abs() < 1e-12, "{later}");
 }
 
@@ -79,9 +79,9 @@ fn a_load_that_begins_later_buckles_what_it_presses_on() {
         let mut stiffness = [f64::NAN];
         arm.tangent_stiffness(t, &[0.0], &arm.drive_positions_at(t), &mut stiffness);
         assert!((stiffness[0] - (100.0 - load)).abs() < 1e-12, "{t}: {stiffness:?}");
-        assert_eq!(arm.equilibrium_at(t, &[0.0], &settings).is_stable(), stable, "{t}");
+        assert_eq!(statics::Problem::of(arm).at_time(t).from(&[0.0]).settings(&settings).solve().is_stable(), stable, "{t}");
     }
-    let buckled = arm.equilibrium_at(5.0, &[1.0], &settings);
+    let buckled = statics::Problem::of(arm).at_time(5.0).from(&[1.0]).settings(&settings).solve();
     let psi = buckled.q[0];
     assert!(buckled.is_stable() && psi > 1.0 && (100.0 * psi - 150.0 * psi.sin()).abs() < 1e-8, "{buckled}: {psi}");
     // Newton's method with the right tangent: quadratic.

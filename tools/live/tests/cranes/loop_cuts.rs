@@ -304,14 +304,14 @@ fn greatest(table: &Table, name: &str) -> f64 {
 }
 
 /// What the first bar exerts on the column, in the axes of the column, at a motion.
-fn on_column(crane: &dyn DynCrane, t: f64, motion: [&[f64]; 3], x: &[f64]) -> Vector3<f64> {
+fn on_column(crane: &dyn DynCrane, state: &StateAt<'_>, a: &[f64]) -> Vector3<f64> {
     let description = crane.description();
     let column = description.bodies.iter().position(|body| body.name == "column").expect("a column");
     let is_pin = |cut: &Place| matches!(cut, Place::Joint { body } if *body == column + 1);
     let pin = description.cuts().iter().position(is_pin).expect("a cut");
-    let force = crane.internal_forces_of(t, motion, x)[pin].force;
+    let force = crane.internal_forces_of(state, a)[pin].force;
     let slewing = description.coordinates.iter().position(|info| info.name == "column_psi").expect("a joint");
-    let (sin, cos) = motion[0][slewing + 1].sin_cos();
+    let (sin, cos) = state.q[slewing + 1].sin_cos();
     Vector3::new(cos * force.x - sin * force.y, -force.z, sin * force.x + cos * force.y)
 }
 
@@ -319,13 +319,13 @@ fn on_column(crane: &dyn DynCrane, t: f64, motion: [&[f64]; 3], x: &[f64]) -> Ve
 fn on_column_at_end(crane: &dyn DynCrane, method: Method) -> Vector3<f64> {
     let start = Start::of(crane).expect("it rests");
     let mut force = Vector3::zeros();
-    let mut observe = |&Sample { t, q, v, x, .. }: &Sample<'_>| {
-        let (a, _) = force_states::accelerations(crane, t, (q, v), x);
-        force = on_column(crane, t, [q, v, &a], x);
+    let mut observe = |sample: &Sample<'_>| {
+        let (a, _) = force_states::accelerations(crane, sample);
+        force = on_column(crane, sample, &a);
         ControlFlow::Continue(())
     };
     crane
-        .simulate(&start.state(), &settings(crane, method), &mut observe)
+        .simulate(&start.state, &settings(crane, method), &mut observe)
         .unwrap_or_else(|stopped| panic!("{stopped}"));
     force
 }
@@ -447,15 +447,15 @@ fn internal_forces_include_the_friction_of_loop_joints() {
     let friction = results::quantities(crane.description(), crane.loop_joints());
     let friction = friction.iter().position(|column| column.name == "hinge_friction_torque").expect("a column");
     let mut greatest = [0.0_f64; 2];
-    let mut observe = |&Sample { t, q, v, x, .. }: &Sample<'_>| {
-        let (a, _) = force_states::accelerations(crane, t, (q, v), x);
-        let moment = crane.internal_forces_of(t, [q, v, &a], x)[rocker].moment.z;
-        let torque = results::quantities_at(crane, t, (q, v), x)[friction];
+    let mut observe = |sample: &Sample<'_>| {
+        let (a, _) = force_states::accelerations(crane, sample);
+        let moment = crane.internal_forces_of(sample, &a)[rocker].moment.z;
+        let torque = results::quantities_at(crane, sample)[friction];
         greatest = [greatest[0].max(moment.abs()), greatest[1].max(torque.abs())];
         ControlFlow::Continue(())
     };
     crane
-        .simulate(&start.state(), &settings(crane, Method::Bdf), &mut observe)
+        .simulate(&start.state, &settings(crane, Method::Bdf), &mut observe)
         .unwrap_or_else(|stopped| panic!("{stopped}"));
     // Forces of some kN, and reactions that follow from accelerations.
     assert!(greatest[1] > 60.0 && greatest[0] < 1e-6, "{greatest:?} N m");

@@ -100,6 +100,6 @@ fn cylinders_that_hold_one_loop_together_are_named() {
     let names = force_states::columns(crane.description());
     let x = ForceStates::new(crane.description()).holding(crane, 0.0, &start.q);
     assert!(names.iter().zip(&x).all(|(name, x)| name == "pump_pressure" || x.abs() < 4e5), "{names:?} {x:?}");
-    let (a, _) = force_states::accelerations(crane, 0.0, (&start.q, &start.v), &x);
+    let (a, _) = force_states::accelerations(crane, &StateAt { t: 0.0, q: &start.q, v: &start.v, x: &x });
     assert!(a.iter().all(|a| a.abs() < 1e-8), "{a:?}");
 }

@@ -423,7 +423,7 @@ fn a_rod_is_the_limit_of_stiff_springs() {
     let pose = |crane: LiveCrane, start: Option<&[f64]>| {
         let crane: &dyn DynCrane = &crane;
         let start = start.map_or_else(|| crane.guess(), <[f64]>::to_vec);
-        let equilibrium = crane.equilibrium_at(0.0, &start, &statics::Settings::default());
+        let equilibrium = statics::Problem::of(crane).from(&start).solve();
         assert!(equilibrium.is_stable(), "{equilibrium}");
         equilibrium.q
     };
@@ -612,7 +612,7 @@ fn the_parallel_harvester_moves_its_tip_on_a_level() {
     let mut q = harvester_crane.guess();
     for angle in [70.0, 60.0, 50.0, 40.0, 32.0] {
         let drives = [0.3, f64::to_radians(angle), 0.41];
-        let rest = harvester_crane.equilibrium_holding(&drives, &q, &statics::Settings::default());
+        let rest = statics::Problem::of(harvester_crane).holding(&drives).from(&q).solve();
         assert!(rest.is_stable(), "{rest}");
         q.clone_from(&rest.q);
         let (theta, extension) = (q[1], q[4]);
@@ -642,7 +642,7 @@ fn one_pass_closes_loops_as_separate_solutions_do() {
     let crane: &dyn DynCrane = &crane;
     let (n, equations) = (crane.size(), crane.count(Count::LoopEquations));
     let q: Vec<f64> =
-        crane_model::statics::guess_dyn(crane).iter().enumerate().map(|(j, q)| q + 0.05 * (j as f64).sin()).collect();
+        crane.guess().iter().enumerate().map(|(j, q)| q + 0.05 * (j as f64).sin()).collect();
     let v: Vec<f64> = (0..n).map(|j| 0.3 * (1.7 * j as f64).cos()).collect();
     let mut found = vec![0.0; crane.count(Count::LoopRows) * n];
     crane.loop_dynamics(0.4, &q, &v, &mut found);

@@ -41,7 +41,7 @@ fn numbers(count: usize, seed: f64) -> Vec<f64> {
 fn rates(crane: &LiveCrane, t: f64, motion: &[f64]) -> Vec<f64> {
     let n = crane.size();
     let ([q, v], x) = ([&motion[..n], &motion[n..2 * n]], &motion[2 * n..]);
-    let (accelerations, of_states) = force_states::accelerations(crane, t, (q, v), x);
+    let (accelerations, of_states) = force_states::accelerations(crane, &StateAt { t, q, v, x });
     [v, &accelerations, &of_states].concat()
 }
 

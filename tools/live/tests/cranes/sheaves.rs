@@ -104,7 +104,7 @@ fn a_winch_winds_up_a_stretched_rope() {
     let tension = MASS * GRAVITY;
     let place = |free: f64| TOP + to_the_top() - free * (1.0 + tension / axial);
     let whole: &dyn DynCrane = &tackle;
-    let later = whole.equilibrium_at(20.0, &rest(whole), &statics::Settings::default());
+    let later = statics::Problem::of(whole).at_time(20.0).from(&rest(whole)).solve();
     for (t, q, free) in [(0.0, &rest(whole), from), (20.0, &later.q, to)] {
         // A few rounding errors of the length.
         assert!((q[0] - place(free)).abs() < 1e-9, "{} instead of {}", q[0], place(free));

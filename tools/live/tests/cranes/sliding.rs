@@ -83,7 +83,7 @@ fn a_block_slides_as_coulomb_says() {
     ] {
         let block = block(slope, 1e6, damping, "run: {duration: 2, output: 0.1}\n");
         let q = vec![0.0; block.size()];
-        let start = Start { v: q.clone(), q, x: Vec::new(), what: String::new(), rests: false };
+        let start = Start::given(InitialState { v: q.clone(), q, x: Vec::new() });
         let table = run(&block, method, tolerance, &start);
         let change = |name: &str| value(&table, name, 2.0) - value(&table, name, 1.0);
         let found = change("block_x_rate");

@@ -319,7 +319,7 @@ fn the_slope_of_the_tip_over_the_extension_does_not_jump() {
     // Both pads pass a border of sections at 0.3 m and at 0.8 m.
     let heights: Vec<f64> = (50..70)
         .map(|index| {
-            let found = crane.equilibrium_at(time(STEP * f64::from(index)), &q, &statics::Settings::default());
+            let found = statics::Problem::of(crane).at_time(time(STEP * f64::from(index))).from(&q).solve();
             assert!(found.is_stable(), "{found}");
             q.clone_from(&found.q);
             crane.points_at(&q)[0].z

@@ -86,7 +86,8 @@ fn assert_transposed(what: &str, crane: &LiveCrane, duration: f64, moves: bool) 
     let settings =
         Settings { duration, output: duration / 7.0, tolerance: 1e-5, audit: false, method: Method::Rosenbrock, ..own };
     let start = if moves {
-        let mut start = Start { v: vec![0.01; n], rests: false, ..Start::of(crane).unwrap() };
+        let rest = Start::of(crane).unwrap().state;
+        let mut start = Start::given(InitialState { v: vec![0.01; n], ..rest });
         start.close(crane, 0.0, &Given::default()).unwrap();
         start
     } else {
@@ -223,12 +224,12 @@ fn feet_that_land_hold_at_once() {
     let step = 1e-4;
     for landing in 0..12 {
         let height = 1e-3 + 5e-5 * f64::from(landing);
-        let start = |more: f64| Start {
-            q: vec![0.0, 0.0, height, 0.0, 0.0, 0.0],
-            v: vec![0.05, 0.02, -0.2 + more, 0.0, 0.01, 0.0],
-            x: Vec::new(),
-            what: String::new(),
-            rests: false,
+        let start = |more: f64| {
+            Start::given(InitialState {
+                q: vec![0.0, 0.0, height, 0.0, 0.0, 0.0],
+                v: vec![0.05, 0.02, -0.2 + more, 0.0, 0.01, 0.0],
+                x: Vec::new(),
+            })
         };
         let of_rate = [Along::Rate(2)];
         let (_, found) = super::run_with_gradients(&crane, &start(0.0), &settings, &of_rate, proceed).unwrap();
