@@ -2,7 +2,7 @@
 
 use crate::common::{DoublePendulum, Lift};
 use crane_model::Text;
-use crane_model::statics::{Problem, Settings, Status, guess};
+use crane_model::statics::{Problem, Settings, Status};
 
 #[test]
 fn a_linear_crane_takes_one_step() {
@@ -30,10 +30,10 @@ fn an_equilibrium_follows_the_drives() {
 fn the_guess_of_a_driven_coordinate_follows_its_drive() {
     let lift = Lift { height: 2.0, ..Lift::default() };
     // Sums of small whole numbers and halves are exact.
-    assert_eq!(guess(&lift)[0], 2.0);
-    assert_eq!(guess(&Lift::default())[0], 0.0);
+    assert_eq!(Problem::of(&lift).guess()[0], 2.0);
+    assert_eq!(Problem::of(&Lift::default()).guess()[0], 0.0);
     // A guess that is not the drive's position is intentional.
-    assert_eq!(guess(&Lift { height: 2.0, ..Lift::guessed() })[0], 0.5);
+    assert_eq!(Problem::of(&Lift { height: 2.0, ..Lift::guessed() }).guess()[0], 0.5);
     assert!((Problem::of(&lift).solve().q[0] - lift.sag()).abs() < 1e-15);
 }
 
