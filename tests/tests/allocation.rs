@@ -1,5 +1,6 @@
 //! No function of a generated crane allocates, including those for eight cranes at once, and neither does any step of a run.
 
+use crane_model::statics::Problem;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
@@ -40,7 +41,7 @@ macro_rules! every_crane {
             fn $name() {
                 let mut crane = cranes::$name::Crane::default();
                 let mut lists = Lists::<{ cranes::$name::N }>::of(&crane);
-                let guess = SVector::from_vec(crane_model::statics::Problem::of(&crane).guess());
+                let guess = SVector::from_vec(Problem::of(&crane).guess());
                 let calls = allocation_counter::measure(|| every_function(&mut crane, (&guess, &mut lists)));
                 assert_eq!(calls.count_total, 0);
             }
@@ -64,7 +65,7 @@ every_crane! {
 fn exact() {
     let mut crane = exact::Crane::default();
     let mut lists = Lists::<{ exact::N }>::of(&crane);
-    let guess = SVector::from_vec(crane_model::statics::Problem::of(&crane).guess());
+    let guess = SVector::from_vec(Problem::of(&crane).guess());
     let calls = allocation_counter::measure(|| every_function(&mut crane, (&guess, &mut lists)));
     assert_eq!(calls.count_total, 0);
 }

@@ -3,7 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::Directions;
-use crate::{StateAt, dyn_crane::DynCrane, dynamics::InitialState, force_states::motion_at, modes::independent_motions};
+use crate::{
+    StateAt, dyn_crane::DynCrane, dynamics::InitialState, force_states::motion_at, modes::independent_motions,
+};
 
 /// Step along a coordinate or its rate, m, rad, m/s or rad/s: rounding and curvature are then some 1e-8 of an entry.
 pub(super) const STEP: f64 = 1e-6;

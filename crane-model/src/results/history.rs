@@ -1,7 +1,7 @@
 //! Internal forces and tipping lines over a run.
 
-use crate::{StateAt, 
-    Description, SectionModuli, Wrench,
+use crate::{
+    Description, SectionModuli, StateAt, Wrench,
     dyn_crane::DynCrane,
     dynamics::Phases,
     force_states,

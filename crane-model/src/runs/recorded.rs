@@ -109,7 +109,8 @@ pub fn record(
 ) -> Result<Recorded, Failed> {
     record_by(crane, start, settings, |recording| {
         let mut recorder = Recorder { recording, proceed };
-        dynamics::Simulation::with_events(crane, &results::QUANTITIES, start.state.clone(), settings).watch(&mut recorder)
+        dynamics::Simulation::with_events(crane, &results::QUANTITIES, start.state.clone(), settings)
+            .watch(&mut recorder)
     })
 }
 

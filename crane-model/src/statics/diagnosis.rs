@@ -4,7 +4,7 @@ use std::fmt;
 
 use nalgebra::DVector;
 
-use super::{Equilibrium, Status, equations::Equations, open_guess, newton::rounding_hides, overloaded::overloaded};
+use super::{Equilibrium, Status, equations::Equations, newton::rounding_hides, open_guess, overloaded::overloaded};
 use crate::{
     CoordinateKind, CoordinateRole, Text,
     dyn_crane::DynCrane,

@@ -1,5 +1,6 @@
 //! Envelopes compared with the equilibrium of moments, and with single cranes.
 
+use crane_model::statics::Problem;
 use std::sync::Mutex;
 
 use crane_codegen::SourceFile;
@@ -179,7 +180,7 @@ fn every_pose_is_as_a_crane_alone() {
         let mut slack = |load: f64| {
             DynCrane::set_parameter(&mut alone, 0, load).unwrap();
             let crane: &dyn DynCrane = &alone;
-            let found = statics::Problem::of(crane).from(near).solve();
+            let found = Problem::of(crane).from(near).solve();
             assert!(found.is_stable());
             let (rest, q) = (vec![0.0; found.q.len()], &found.q);
             let lines = crane_model::tipping::lines(crane, 0.0, q, &rest, &rest);
@@ -221,7 +222,7 @@ fn positions_held_are_motions_that_hold() {
         let held = crane(&spec("{hold: 0.9}"));
         let (moving, held): (&dyn DynCrane, &dyn DynCrane) = (&moving, &held);
         let settings = Settings::default();
-        let one = statics::Problem::of(moving).holding(&[0.9]).from(&[0.3]).settings(&settings).solve();
+        let one = Problem::of(moving).holding(&[0.9]).from(&[0.3]).settings(&settings).solve();
         let other = held.equilibrium(&settings);
         assert!(one.is_stable() && (one.q[0] - other.q[0]).abs() < 1e-12, "{} {}", one.q[0], other.q[0]);
         let efforts = [moving.drive_efforts_holding(0.0, &[0.9], &one.q)[0], held.drive_efforts_at_rest(&other.q)[0]];

@@ -188,10 +188,10 @@ struct Part<'a> {
 
 impl Watch for Part<'_> {
     fn sample(&mut self, sample: &Sample<'_>) -> ControlFlow<()> {
-        if (self.keeps)(t) {
+        if (self.keeps)(sample.t) {
             self.rows.push(quantities_at(self.crane, sample));
         }
-        self.end = InitialState { q: q.to_vec(), v: v.to_vec(), x: x.to_vec() };
+        self.end = sample.state.into();
         ControlFlow::Continue(())
     }
 }

@@ -1,5 +1,6 @@
 //! Runs of compiled cranes with rigid drives, by every method.
 
+use crane_model::statics::Problem;
 use std::ops::ControlFlow;
 
 use crane_model::dyn_crane::DynCrane;
@@ -133,7 +134,7 @@ fn modes_and_statics_leave_prescribed_coordinates_out() {
             assert_eq!(mode.shape.len(), q.len());
             assert!(prescribed.iter().all(|j| mode.shape[*j] == 0.0 && !mode.dominating.contains(j)));
         }
-        let found = statics::Problem::of(crane).at_time(0.8).from(&q).solve();
+        let found = Problem::of(&*crane).at_time(0.8).from(&q).solve();
         let mut moved = found.q.clone();
         crane.prescribe(0.8, &mut moved, &mut vec![0.0; q.len()]);
         assert_eq!(found.q, moved, "{}: {found}", crane.description().name);

@@ -31,7 +31,11 @@ pub fn plan<const N: usize>(model: &impl CraneModel<N>) -> Plan {
         coordinate.role == CoordinateRole::Passive && coordinate.kind == CoordinateKind::Rotation
     };
     let of = |(index, guess): (usize, &f64)| if is_passive(index) { guess + ASIDE } else { *guess };
-    Plan { start: statics::Problem::of(model).guess().iter().enumerate().map(of).collect(), duration: 2.0, output: 0.05 }
+    Plan {
+        start: statics::Problem::of(model).guess().iter().enumerate().map(of).collect(),
+        duration: 2.0,
+        output: 0.05,
+    }
 }
 
 /// The shortest time of some runs by a method, s, and the coordinates at every result. `accuracy`: the step of a method with constant steps, s, or the

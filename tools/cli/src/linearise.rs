@@ -1,5 +1,6 @@
 //! `crane linearise`: small motions about a pose, a steady motion, or a moment of a run.
 
+use crane_model::StateAt;
 use std::{io::Write, path::Path};
 
 use crane_live::LiveCrane;

@@ -115,7 +115,8 @@ impl Timing {
                 given = Given::default();
             }
             let states = force_states::columns(description);
-            start.x.resize(if start.x.is_empty() { 0 } else { states.len() }, f64::NAN);
+            let count = if start.x.is_empty() { 0 } else { states.len() };
+            start.x.resize(count, f64::NAN);
             if let Some(index) = start.x.iter().position(|x| x.is_nan()) {
                 let title = format!("{} has no column {}", file.display(), states[index]);
                 return Err(Problem::usage(

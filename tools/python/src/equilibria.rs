@@ -3,7 +3,7 @@
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::envelope::{Axis, Varied};
-use crane_model::statics::{Diagnosis, Equilibrium, RestSearch, Settings};
+use crane_model::statics::{Diagnosis, Equilibrium, Problem, RestSearch, Settings};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -42,11 +42,13 @@ impl Found {
             positions[drive] = position;
         }
         let equilibrium = match (at, from) {
-            (_, Some(from)) if !held.is_empty() => statics::Problem::of(crane).holding(&positions).from(from).settings(settings).solve(),
+            (_, Some(from)) if !held.is_empty() => {
+                Problem::of(crane).holding(&positions).from(from).settings(settings).solve()
+            }
             (_, None) if !held.is_empty() => RestSearch { crane, positions: &positions }.find(None),
             (None, None) => crane.equilibrium(settings),
-            (at, Some(from)) => statics::Problem::of(crane).at_time(at.unwrap_or(0.0)).from(from).settings(settings).solve(),
-            (Some(t), None) => statics::Problem::of(crane).at_time(t).from(&crane.guess()).settings(settings).solve(),
+            (at, Some(from)) => Problem::of(crane).at_time(at.unwrap_or(0.0)).from(from).settings(settings).solve(),
+            (Some(t), None) => Problem::of(crane).at_time(t).from(&crane.guess()).settings(settings).solve(),
         };
         let diagnosis = (!equilibrium.is_stable()).then(|| Diagnosis::of(crane, &equilibrium));
         let q = &equilibrium.q;

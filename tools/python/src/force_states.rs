@@ -1,6 +1,7 @@
 //! Functions of states that include those of forces: pressures, spools, bristles.
 
 use crane_live::LiveCrane;
+use crane_model::StateAt;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::force_states::{self, ForceStates};
 use crane_model::results::{quantities, quantities_at};
@@ -49,9 +50,7 @@ impl Crane {
             .map(|column| column.name)
             .collect();
         let state = State { t, ..State::moving(q, v) };
-        let all = self.of_states(py, state, (x, invalid), names.len(), |crane, state| {
-            quantities_at(crane, state)
-        })?;
+        let all = self.of_states(py, state, (x, invalid), names.len(), |crane, state| quantities_at(crane, state))?;
         Ok((all.into_any(), names))
     }
 }

@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use crane_live::{Hold, SteeredMotion};
-use crane_model::Text;
 use crane_model::dyn_crane::DynCrane;
-use crane_model::dynamics::{InitialState, Sample, Settings, Stopped};
+use crane_model::dynamics::{Sample, Settings, Stopped};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::runs::ensemble::Case;
 use crane_model::runs::{Reason, Start};
+use crane_model::{StateAt, Text};
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -96,10 +96,12 @@ impl Crane {
             for (index, input) in case.inputs.iter().enumerate() {
                 crane.set_input(index, *input);
             }
-            let start =
+            let mut start =
                 Start::with(&crane, t, case.q.as_deref(), case.v.as_deref()).map_err(|failed| raised(&failed))?;
-            let start = InitialState { q: start.q, v: start.v, x: if x.is_empty() { start.x } else { x.clone() } };
-            SteeredMotion::new(&crane, t, &start, &settings, marks.as_deref())
+            if !x.is_empty() {
+                start.x.clone_from(&x);
+            }
+            SteeredMotion::new(&crane, t, &start.state, &settings, marks.as_deref())
                 .map_err(|stopped| failed(stopped, &description.name))
         };
         let begun = map_rows(py, cases.len(), |row, _| begin(&cases[row]))?;

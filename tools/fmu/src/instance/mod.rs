@@ -312,11 +312,11 @@ impl Instance {
             return Err(Fault::Error(format!("{} numbers for {count} event indicators", out.len())));
         }
         self.settle()?;
-        let Self { crane, moment: Some(Moment { t, q, v, .. }), contacts, .. } = self else {
+        let Self { crane, moment: Some(moment), contacts, .. } = self else {
             return Err(Fault::nowhere());
         };
         let mut places = out.iter_mut();
-        contacts.indicators(crane.as_ref(), *t, (q, v), |indicator| {
+        contacts.indicators(crane.as_ref(), &moment.state(), |indicator| {
             places.next().into_iter().for_each(|slot| *slot = indicator);
         });
         if self.conditions.is_empty() {

@@ -1,6 +1,7 @@
 //! States to come back to.
 
 use super::{Fault, Instance};
+use crane_model::StateAt;
 
 /// Bytes per number of a state.
 const BYTES: usize = size_of::<f64>();

@@ -1,5 +1,6 @@
 //! The quantities by which the error of a run is measured, and the differences between two runs.
 
+use crane_model::StateAt;
 use std::{ops::ControlFlow, time::Instant};
 
 use nalgebra::Vector3;

@@ -37,7 +37,7 @@ mod whole;
 
 use crane_model::dyn_crane::DynCrane;
 use crane_model::runs::{Failed, Reason};
-use crane_model::statics::{self, Equilibrium};
+use crane_model::statics::{self, Equilibrium, Problem};
 
 use crate::LiveCrane;
 use crate::dual::{DIRECTIONS, Dual8};
@@ -223,7 +223,7 @@ pub fn sensitivity_near(
     q: &[f64],
 ) -> Result<Sensitivity, Failed> {
     let any: &dyn DynCrane = crane;
-    at_rest(crane, parameters, *settings, &statics::Problem::of(any).from(q).solve())
+    at_rest(crane, parameters, *settings, &Problem::of(any).from(q).solve())
 }
 
 /// At an equilibrium that was found.

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
-use crane_model::dynamics::{Method, Settings};
+use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::results::{Extremes, Peaks, cautions};
 use crane_model::runs::ensemble::{self, Execution};
 use crane_model::runs::{Start, record_checked};

@@ -1,5 +1,6 @@
 //! Efforts of drives besides spring and damper, given by inputs and over time.
 
+use crane_model::statics::Problem;
 use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
@@ -36,7 +37,7 @@ fn an_effort_is_a_pair_of_moments() {
         let crane: &dyn DynCrane = &crane;
         let q: Vec<f64> = (0..n).map(|i| 0.3 * (1.3 * i as f64).sin()).collect();
         let v: Vec<f64> = (0..n).map(|i| 0.2 * (0.7 * i as f64).cos()).collect();
-        let rest = statics::Problem::of(crane).from(&crane.guess()).solve();
+        let rest = Problem::of(crane).from(&crane.guess()).solve();
         assert!(rest.is_stable());
         let mut all = crane.accelerations_at(0.0, &q, &v).as_slice().to_vec();
         all.extend(rest.q.clone());

@@ -78,18 +78,19 @@ fn a_run_that_begins_later_has_the_events_from_there() {
     ));
     let (start, settings) = (Start::of(&lift as &dyn DynCrane).expect("a start"), settings(&lift, Method::Bdf, 0.25));
     let (omega, mut times) = ((5e4_f64 / 90.0).sqrt(), Vec::new());
-    let run = Simulation::with_events(&lift, &QUANTITIES, start.state.clone(), &settings).at_time(0.5).observe(|sample| {
-        let share = if sample.t < 0.505 { 1.0 } else { (omega * (sample.t - 0.505)).cos() };
-        // As above.
-        assert!(
-            (sample.q[0] + (GRAVITY / 5e4) * (90.0 + 500.0 * share)).abs() < 1e-6,
-            "{} s: {}",
-            sample.t,
-            sample.q[0]
-        );
-        times.push(sample.t);
-        ControlFlow::Continue(())
-    });
+    let run =
+        Simulation::with_events(&lift, &QUANTITIES, start.state.clone(), &settings).at_time(0.5).observe(|sample| {
+            let share = if sample.t < 0.505 { 1.0 } else { (omega * (sample.t - 0.505)).cos() };
+            // As above.
+            assert!(
+                (sample.q[0] + (GRAVITY / 5e4) * (90.0 + 500.0 * share)).abs() < 1e-6,
+                "{} s: {}",
+                sample.t,
+                sample.q[0]
+            );
+            times.push(sample.t);
+            ControlFlow::Continue(())
+        });
     assert_eq!(run.map(|run| run.time), Ok(0.75));
     assert_eq!(times, (0..=25).map(|i| 0.5 + 0.01 * f64::from(i)).collect::<Vec<f64>>());
 }
@@ -394,7 +395,7 @@ fn steps_have_the_events_of_a_run() {
         let table = run(&crane, method, 2.0);
         assert!(table.times_of_events(crane.description()).iter().all(Option::is_some), "{method:?}");
         let of_steps = Settings { duration: f64::INFINITY, ..settings(&crane, method, 2.0) };
-        let start = Start::of(&crane as &dyn DynCrane).expect("a start").state();
+        let start = Start::of(&crane as &dyn DynCrane).expect("a start").state;
         let mut motion = SteeredMotion::new(&crane, 0.0, &start, &of_steps, None).expect("a motion");
         let mut in_others =
             crane_live::Motion::new(Box::new(crane.clone()), 0.0, &start, &of_steps, None).expect("a motion");

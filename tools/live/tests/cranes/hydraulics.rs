@@ -309,7 +309,7 @@ fn energy_is_balanced() {
 #[test]
 fn a_run_goes_on_from_the_states_of_its_oil() {
     let crane = lift("gain: 10", "{quintic: {from: 0.1, to: 0.4, duration: 2}}", PUMP);
-    let start = Start::of(&crane).expect("it rests").state();
+    let start = Start::of(&crane).expect("it rests").state;
     let go = |from: &InitialState, begin: f64, duration: f64| {
         let settings = Settings { output: duration, ..settings(Method::Rk4, 1e-8, duration) };
         let mut motion =

@@ -1,5 +1,7 @@
 //! Inputs: numbers that are set between steps.
 
+use crane_model::StateAt;
+use crane_model::statics::Problem;
 use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
@@ -43,7 +45,7 @@ fn numbers(crane: &LiveCrane, t: f64) -> Vec<f64> {
     all.extend(crane.drive_motions_at(t).concat());
     all.extend([crane.energies_at(t, &q, &v).total(), crane.drive_power(t, &q, &v), crane.load_power(t, &q, &v)]);
     all.extend(crane.internal_forces_at(t, &q, &v, &v).iter().flat_map(|wrench| wrench.force.data.0[0]));
-    all.extend(statics::Problem::of(crane).at_time(t).from(&q).solve().q);
+    all.extend(Problem::of(crane).at_time(t).from(&q).solve().q);
     all
 }
 

@@ -12,7 +12,7 @@ use crane_model::linear::{About, Forces, Input, LinearModel, NoModel, Output, li
 use crane_model::modes::{DampedMode, damped, with_servos};
 use crane_model::nalgebra::{Complex, DMatrix, DVector};
 use crane_model::results::quantities_at;
-use crane_model::statics;
+use crane_model::{StateAt, statics};
 
 fn crane(text: &str) -> LiveCrane {
     LiveCrane::from_spec(&SourceFile::new("crane.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}\n{text}"))

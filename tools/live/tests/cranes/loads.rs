@@ -79,7 +79,11 @@ fn a_load_that_begins_later_buckles_what_it_presses_on() {
         let mut stiffness = [f64::NAN];
         arm.tangent_stiffness(t, &[0.0], &arm.drive_positions_at(t), &mut stiffness);
         assert!((stiffness[0] - (100.0 - load)).abs() < 1e-12, "{t}: {stiffness:?}");
-        assert_eq!(statics::Problem::of(arm).at_time(t).from(&[0.0]).settings(&settings).solve().is_stable(), stable, "{t}");
+        assert_eq!(
+            statics::Problem::of(arm).at_time(t).from(&[0.0]).settings(&settings).solve().is_stable(),
+            stable,
+            "{t}"
+        );
     }
     let buckled = statics::Problem::of(arm).at_time(5.0).from(&[1.0]).settings(&settings).solve();
     let psi = buckled.q[0];

@@ -14,7 +14,7 @@ use crane_model::dynamics::{Method, Sample, Settings};
 use crane_model::nalgebra::Vector3;
 use crane_model::results::Table;
 use crane_model::runs::{self, Start};
-use crane_model::{Cut as Place, force_states, modes, results, statics};
+use crane_model::{Cut as Place, StateAt, force_states, modes, results, statics};
 
 /// Lengths of crank, coupler and rocker, and places of both pins on the column, m.
 const BARS: [(&str, f64); 3] = [("crank", 1.2), ("coupler", 2.0), ("rocker", 1.5)];
@@ -324,9 +324,7 @@ fn on_column_at_end(crane: &dyn DynCrane, method: Method) -> Vector3<f64> {
         force = on_column(crane, sample, &a);
         ControlFlow::Continue(())
     };
-    crane
-        .simulate(&start.state, &settings(crane, method), &mut observe)
-        .unwrap_or_else(|stopped| panic!("{stopped}"));
+    crane.simulate(&start.state, &settings(crane, method), &mut observe).unwrap_or_else(|stopped| panic!("{stopped}"));
     force
 }
 

@@ -5,7 +5,7 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::force_states::ForceStates;
 use crane_model::runs::Start;
-use crane_model::{force_states, loop_joints, statics};
+use crane_model::{StateAt, force_states, loop_joints, statics};
 
 /// A four-bar whose pins on the ground are 1.2 m apart.
 fn four_bar(more: &str) -> LiveCrane {

@@ -641,8 +641,7 @@ fn one_pass_closes_loops_as_separate_solutions_do() {
     let crane = crane(text);
     let crane: &dyn DynCrane = &crane;
     let (n, equations) = (crane.size(), crane.count(Count::LoopEquations));
-    let q: Vec<f64> =
-        crane.guess().iter().enumerate().map(|(j, q)| q + 0.05 * (j as f64).sin()).collect();
+    let q: Vec<f64> = crane.guess().iter().enumerate().map(|(j, q)| q + 0.05 * (j as f64).sin()).collect();
     let v: Vec<f64> = (0..n).map(|j| 0.3 * (1.7 * j as f64).cos()).collect();
     let mut found = vec![0.0; crane.count(Count::LoopRows) * n];
     crane.loop_dynamics(0.4, &q, &v, &mut found);

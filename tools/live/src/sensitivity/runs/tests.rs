@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use crane_codegen::{SourceFile, build};
 use crane_model::dyn_crane::DynCrane;
 use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, FeetSlopes, Numbers, Slopes};
-use crane_model::dynamics::{Method, Settings};
+use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::loop_joints::Given;
 use crane_model::results::quantities;
 use crane_model::runs::{self, Measure, Start, record_adjoint, record_gradients};
