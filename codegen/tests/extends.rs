@@ -146,7 +146,7 @@ links:
     let middle = load("sub/middle.yaml");
     assert_eq!(names(&middle), ["arm_theta", "hand_x"]);
     assert_eq!((middle.run.duration, middle.run.output), (4.0, 0.1));
-    assert_eq!((middle.drives.len(), middle.of(Group::JointDampers).len()), (1, 0));
+    assert_eq!((middle.drives.len(), middle.forces_of_group(Group::JointDampers).len()), (1, 0));
     let last = load("last.yaml");
     assert_eq!(
         (last.name.as_str(), names(&last)),

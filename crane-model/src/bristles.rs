@@ -19,7 +19,7 @@ use crate::{
     BristleInfo, Description, StateAt,
     column::column_name,
     dyn_crane::DynCrane,
-    stateful_force::{Evaluated, ForceState, Row, StatefulForce, StatefulForces},
+    stateful_force::{Evaluated, ForceRow, ForceState, StatefulForce, StatefulForces},
 };
 
 /// The joints of a crane that stick, with the names of their coordinates.
@@ -49,8 +49,8 @@ impl StatefulForces for Bristles {
         self.0.iter().map(state).collect()
     }
 
-    fn rows(&self) -> Vec<Row> {
-        self.joints().map(|joint| Row { first: joint.coordinate, entries: vec![1.0] }).collect()
+    fn rows(&self) -> Vec<ForceRow> {
+        self.joints().map(|joint| ForceRow { first: joint.coordinate, entries: vec![1.0] }).collect()
     }
 
     fn is_local(&self) -> bool {

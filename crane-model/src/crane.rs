@@ -66,12 +66,12 @@ impl dyn DynCrane + '_ {
 
     /// Static equilibrium from the guess: [`statics::Problem`].
     pub fn equilibrium(&self, settings: &statics::Settings) -> Equilibrium {
-        statics::Problem::of(self).settings(settings).solve()
+        statics::Problem::new(self).settings(settings).solve()
     }
 
     /// Coefficients of small motions about a pose at rest, with shut valves and joints that stick.
     pub fn small_motions_at(&self, q: &[f64]) -> SmallMotions {
-        let mut motions = SmallMotions::of(self, q);
+        let mut motions = SmallMotions::about_pose(self, q);
         modes::stiffen_by_oil(self, q, &mut motions);
         modes::stiffen_by_bristles(self.description(), &mut motions);
         motions.with_closed_loops(self, 0.0, q)

@@ -171,7 +171,7 @@ pub struct Manoeuvre<'a> {
 
 /// What one of several manoeuvres does to a place of a beam.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct DamagePart {
     /// How often the manoeuvre is repeated.
     pub repetitions: f64,
     /// Stresses at the point of the contour that suffers most, Pa.
@@ -188,7 +188,7 @@ pub struct Fatigue {
     /// The place, as it is first.
     pub place: Place,
     /// By manoeuvre.
-    pub parts: Vec<Part>,
+    pub parts: Vec<DamagePart>,
     /// Damage by all repetitions of all manoeuvres.
     pub damage: f64,
 }
@@ -241,9 +241,9 @@ pub fn of_manoeuvres(
             let of_manoeuvre = |(manoeuvre, contours): (&Manoeuvre<'_>, &Vec<Vec<f64>>)| {
                 let history: Vec<f64> = contours.iter().map(|contour| contour[point]).collect();
                 let (repetitions, cycles) = (manoeuvre.repetitions, count_repeating_cycles(&history));
-                Part { repetitions, damage: repetitions * detail.damage(&cycles), history, cycles }
+                DamagePart { repetitions, damage: repetitions * detail.damage(&cycles), history, cycles }
             };
-            let parts: Vec<Part> = manoeuvres.iter().zip(&contours).map(of_manoeuvre).collect();
+            let parts: Vec<DamagePart> = manoeuvres.iter().zip(&contours).map(of_manoeuvre).collect();
             Fatigue { place: *place, damage: parts.iter().map(|part| part.damage).sum(), parts }
         };
         let points = contours.iter().flatten().map(Vec::len).min().unwrap_or(0);

@@ -20,7 +20,7 @@ use crate::{
     CoordinateRole, Description, StateAt,
     dyn_crane::DynCrane,
     hydraulics::Hydraulics,
-    stateful_force::{Evaluated, ForceState, Row, StatefulForce, StatefulForces},
+    stateful_force::{Evaluated, ForceRow, ForceState, StatefulForce, StatefulForces},
 };
 
 /// τ, s: how fast a pad without a damper follows its slider.
@@ -481,9 +481,9 @@ impl StatefulForces for Feet {
         columns(self.names.iter()).map(state).collect()
     }
 
-    fn rows(&self) -> Vec<Row> {
+    fn rows(&self) -> Vec<ForceRow> {
         let [first, count] = self.base;
-        (0..2 * self.all.len()).map(|_| Row { first, entries: vec![0.0; count] }).collect()
+        (0..2 * self.all.len()).map(|_| ForceRow { first, entries: vec![0.0; count] }).collect()
     }
 
     fn is_local(&self) -> bool {

@@ -14,7 +14,7 @@ use crate::{
     feet::Feet,
     hydraulics::Hydraulics,
     loop_joints::{self, Loops},
-    stateful_force::{Evaluated, ForceState, Row, StatefulForce, StatefulForces},
+    stateful_force::{Evaluated, ForceRow, ForceState, StatefulForce, StatefulForces},
 };
 
 /// The forces with states of a description, kind by kind: first those that span several coordinates or share states, then local ones.
@@ -31,7 +31,7 @@ pub struct ForceStates {
     /// The forces as last evaluated, kind by kind.
     forces: Vec<StatefulForce>,
     /// Their rows.
-    rows: Vec<Row>,
+    rows: Vec<ForceRow>,
     /// Their generalized forces, and the accelerations that these add.
     efforts: [Vec<f64>; 2],
     /// The coordinates of rigid drives, and the mass matrix if there are any.
@@ -153,7 +153,7 @@ impl ForceStates {
     }
 
     /// The rows `∂ℓ/∂q` of the forces, as last evaluated.
-    pub(crate) fn rows(&self) -> &[Row] {
+    pub(crate) fn rows(&self) -> &[ForceRow] {
         &self.rows
     }
 
@@ -336,12 +336,12 @@ pub fn impossible(description: &Description, x: &[f64]) -> Option<String> {
 pub fn accelerations(crane: &dyn DynCrane, state: &StateAt<'_>) -> (Vec<f64>, Vec<f64>) {
     let states = ForceStates::new(crane.description()).len();
     assert_eq!(state.x.len(), states, "one number for each state of a force");
-    let Motion { accelerations, rates, .. } = motion_at(crane, state);
+    let ClosedMotion { accelerations, rates, .. } = motion_at(crane, state);
     (accelerations, rates)
 }
 
 /// Accelerations at a state of a crane, and what closes its loops.
-pub(crate) struct Motion {
+pub(crate) struct ClosedMotion {
     /// q̈, with closed loops.
     pub accelerations: Vec<f64>,
     /// The part of q̈ that closing the loops causes; empty without loops.
@@ -351,7 +351,7 @@ pub(crate) struct Motion {
     loops: Loops,
 }
 
-impl Motion {
+impl ClosedMotion {
     /// What each equation of the loop joints transmits, N and N m.
     pub fn multipliers(&self) -> &[f64] {
         self.loops.multipliers()
@@ -359,7 +359,7 @@ impl Motion {
 }
 
 /// The accelerations at a state; without the states of forces if they are not given.
-pub(crate) fn motion_at(crane: &dyn DynCrane, moment: &StateAt<'_>) -> Motion {
+pub(crate) fn motion_at(crane: &dyn DynCrane, moment: &StateAt<'_>) -> ClosedMotion {
     let &StateAt { q, x, .. } = moment;
     let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
     let mut loops = Loops::new(crane);
@@ -374,7 +374,7 @@ pub(crate) fn motion_at(crane: &dyn DynCrane, moment: &StateAt<'_>) -> Motion {
         loops.close(&mut accelerations);
         change.iter_mut().zip(&accelerations).for_each(|(change, closed)| *change = closed - *change);
     }
-    Motion { accelerations, change, rates, loops }
+    ClosedMotion { accelerations, change, rates, loops }
 }
 
 /// What closing the loops adds to the effort of each rigid drive: its coordinate, and N m or N.
@@ -382,12 +382,12 @@ pub(crate) fn loops_on_rigid_drives(crane: &dyn DynCrane, moment: &StateAt<'_>) 
     if crane.loop_joints().is_empty() || crane.description().prescribed().is_empty() {
         return Vec::new();
     }
-    let Motion { change, loops, .. } = motion_at(crane, moment);
+    let ClosedMotion { change, loops, .. } = motion_at(crane, moment);
     loop_joints::on_rigid_drives(crane, moment.q, &loops, &change)
 }
 
 /// Adds the generalized forces of forces along their rows.
-fn add_forces(forces: &[StatefulForce], rows: &[Row], generalized: &mut [f64]) {
+fn add_forces(forces: &[StatefulForce], rows: &[ForceRow], generalized: &mut [f64]) {
     for (force, row) in forces.iter().zip(rows) {
         row.add_to(generalized, force.force);
     }

@@ -21,7 +21,7 @@ impl<'a> StateAt<'a> {
     ///
     /// # Panics
     /// If there are fewer than 2 n numbers.
-    pub fn of(t: f64, n: usize, motion: &'a [f64]) -> Self {
+    pub fn from_motion(t: f64, n: usize, motion: &'a [f64]) -> Self {
         let (q, rest) = motion.split_at(n);
         let (v, x) = rest.split_at(n);
         Self { t, q, v, x }

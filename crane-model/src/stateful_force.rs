@@ -14,7 +14,7 @@ pub(crate) trait StatefulForces: Any + Debug + Send + Sync {
     fn states(&self) -> Vec<ForceState>;
 
     /// Their rows, with the coordinates on which they act.
-    fn rows(&self) -> Vec<Row>;
+    fn rows(&self) -> Vec<ForceRow>;
 
     /// Whether each of them has one state, which depends on no other, and acts on one coordinate: an implicit step eliminates it there.
     fn is_local(&self) -> bool;
@@ -78,7 +78,7 @@ pub(crate) struct Evaluated<'a> {
     /// The forces.
     pub forces: &'a mut [StatefulForce],
     /// Their rows.
-    pub rows: &'a mut [Row],
+    pub rows: &'a mut [ForceRow],
 }
 
 /// Maximum number of states of a force.
@@ -114,12 +114,12 @@ pub(crate) struct StatefulForce {
 
 /// `J = ∂ℓ/∂q` of a force: its entries from the first to the last that is not zero.
 #[derive(Clone, Debug)]
-pub(crate) struct Row {
+pub(crate) struct ForceRow {
     pub first: usize,
     pub entries: Vec<f64>,
 }
 
-impl Row {
+impl ForceRow {
     /// The entry of a coordinate.
     pub fn entry(&self, coordinate: usize) -> f64 {
         coordinate.checked_sub(self.first).and_then(|index| self.entries.get(index)).copied().unwrap_or(0.0)

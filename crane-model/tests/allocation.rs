@@ -24,9 +24,9 @@ fn steps_of_every_method_allocate_nothing() {
     for method in Method::ALL {
         // Memory is allocated once per run: a run ten times as long allocates as often.
         let [short, long] = [1.0, 10.0].map(|duration| {
-            let settings = Settings { method, duration, audit: true, ..Settings::of(lift.description) };
+            let settings = Settings { method, duration, audit: true, ..Settings::from_description(lift.description) };
             let start = rk4::State::at_rest(Vector1::new(lift.sag()));
-            let run = || Simulation::of(&lift, start, &settings).run().expect("a stable run");
+            let run = || Simulation::new(&lift, start, &settings).run().expect("a stable run");
             allocation_counter::measure(|| _ = run()).count_total
         });
         assert_eq!(short, long, "{method}");

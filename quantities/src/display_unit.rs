@@ -45,7 +45,7 @@ impl DisplayUnit {
 
     /// The unit of this name.
     #[must_use]
-    pub fn of(unit: &str) -> Option<Self> {
+    pub fn find(unit: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|known| known.unit() == unit)
     }
 

@@ -201,7 +201,7 @@ pub struct Constants {
 }
 
 impl Constants {
-    fn of(params: &Params) -> Self {
+    fn new(params: &Params) -> Self {
         let c001 = params.payload + 25.0;
         let t256 = 1.2 * params.payload;
         let c002 = -7.5 - t256;
@@ -3092,7 +3092,7 @@ pub mod lanes {
         c019: f64x8,
     }
     impl Constants {
-        fn of(params: &Params) -> Self {
+        fn new(params: &Params) -> Self {
             let c001 = params.payload + splat(25.0);
             let t256 = splat(1.2) * params.payload;
             let c002 = splat(-7.5) - t256;
@@ -3432,7 +3432,7 @@ pub mod lanes {
         /// Eight cranes with these values of their live parameters, which each crane has checked.
         pub(super) fn new(params: &Params) -> Self {
             Cranes {
-                constants: Constants::of(params),
+                constants: Constants::new(params),
             }
         }
     }
@@ -3452,7 +3452,7 @@ impl Crane {
     pub fn new(params: Params) -> Result<Self, ParameterError> {
         params.check()?;
         Ok(Crane {
-            constants: Constants::of(&params),
+            constants: Constants::new(&params),
         })
     }
     /// Values of the live parameters.
@@ -3465,7 +3465,7 @@ impl Crane {
 impl Default for Crane {
     fn default() -> Self {
         Crane {
-            constants: Constants::of(&Params::default()),
+            constants: Constants::new(&Params::default()),
         }
     }
 }

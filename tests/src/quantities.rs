@@ -94,7 +94,7 @@ pub struct Lists<const N: usize> {
 
 impl<const N: usize> Lists<N> {
     /// The lists of a crane.
-    pub fn of(crane: &impl CraneModel<N>) -> Self {
+    pub fn new(crane: &impl CraneModel<N>) -> Self {
         fn list<T: Entry>(lengths: &[(Item, usize)], item: Item) -> Vec<T> {
             let of_item = lengths.iter().filter(|(of, _)| *of == item);
             vec![T::repeat(0.0); of_item.map(|(_, length)| *length).max().unwrap_or_default()]
@@ -183,7 +183,7 @@ pub fn evaluate<const N: usize, C: CraneModel<N>>(crane: &C, state: &State) -> V
     let mut out = Vec::new();
     // The rates also serve as accelerations and as the right-hand side.
     let at = At { t, q, v, a: v, r: v, positions: &crane.drive_positions(t) };
-    call_every(crane, &at, &mut Lists::of(crane), &mut |_, numbers| out.extend(numbers));
+    call_every(crane, &at, &mut Lists::new(crane), &mut |_, numbers| out.extend(numbers));
 
     let mut lower = SMatrix::zeros();
     let with_mass_matrix = crane.mass_matrix_and_bias(q, v, &mut lower);

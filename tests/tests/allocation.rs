@@ -41,7 +41,7 @@ macro_rules! every_crane {
             fn $name() {
                 let mut crane = cranes::$name::Crane::default();
                 let mut lists = Lists::<{ cranes::$name::N }>::of(&crane);
-                let guess = SVector::from_vec(Problem::of(&crane).guess());
+                let guess = SVector::from_vec(Problem::new(&crane).guess());
                 let calls = allocation_counter::measure(|| every_function(&mut crane, (&guess, &mut lists)));
                 assert_eq!(calls.count_total, 0);
             }
@@ -64,8 +64,8 @@ every_crane! {
 #[test]
 fn exact() {
     let mut crane = exact::Crane::default();
-    let mut lists = Lists::<{ exact::N }>::of(&crane);
-    let guess = SVector::from_vec(Problem::of(&crane).guess());
+    let mut lists = Lists::<{ exact::N }>::new(&crane);
+    let guess = SVector::from_vec(Problem::new(&crane).guess());
     let calls = allocation_counter::measure(|| every_function(&mut crane, (&guess, &mut lists)));
     assert_eq!(calls.count_total, 0);
 }
@@ -87,7 +87,7 @@ fn steps_allocate_nothing() {
         let start = InitialState::at_rest(crane.guess());
         for method in Method::ALL {
             let [short, long] = [0.05, 0.2].map(|duration| {
-                let defaults = Settings::of(crane.description());
+                let defaults = Settings::from_description(crane.description());
                 let settings = Settings { method, duration, step: 2e-5, output: 0.01, audit: true, ..defaults };
                 let run = || crane.simulate(&start, &settings, &mut |_| ControlFlow::Continue(()));
                 allocation_counter::measure(|| run().map(|_| ()).expect("a stable run")).count_total

@@ -16,17 +16,17 @@ use syn::{
 
 /// What `#[key(…)]` says.
 #[derive(Clone, Default)]
-struct Row {
+struct KeyRow {
     name: Option<String>,
     unit: Option<LitStr>,
     limit: Option<Expr>,
     usual: Option<ExprRange>,
 }
 
-impl Row {
+impl KeyRow {
     /// The row among attributes; its unit and limit are those of the whole type where it has none.
-    fn among(attributes: &[Attribute], whole: &Row) -> Result<Self> {
-        let mut row = Row::default();
+    fn among(attributes: &[Attribute], whole: &KeyRow) -> Result<Self> {
+        let mut row = KeyRow::default();
         for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("key")) {
             attribute.parse_args_with(|input: syn::parse::ParseStream| {
                 while !input.is_empty() {
@@ -49,7 +49,7 @@ impl Row {
                 Ok(())
             })?;
         }
-        Ok(if row.unit.is_none() { Row { name: row.name, ..whole.clone() } } else { row })
+        Ok(if row.unit.is_none() { KeyRow { name: row.name, ..whole.clone() } } else { row })
     }
 
     /// What its numbers measure; without a unit, this.
@@ -84,7 +84,7 @@ pub fn derive_from_node(input: proc_macro::TokenStream) -> proc_macro::TokenStre
 }
 
 fn implement(input: &DeriveInput) -> Result<TokenStream> {
-    let whole = Row::among(&input.attrs, &Row::default())?;
+    let whole = KeyRow::among(&input.attrs, &KeyRow::default())?;
     let (form, read) = match &input.data {
         Data::Struct(data) => match &data.fields {
             Fields::Named(fields) => mapping(fields, &whole)?,
@@ -107,7 +107,7 @@ fn implement(input: &DeriveInput) -> Result<TokenStream> {
 }
 
 /// Form and reading of a mapping.
-fn mapping(fields: &FieldsNamed, whole: &Row) -> Result<(TokenStream, TokenStream)> {
+fn mapping(fields: &FieldsNamed, whole: &KeyRow) -> Result<(TokenStream, TokenStream)> {
     let keys = keys(fields, whole)?;
     let values = values(fields);
     let form = quote! { crate::node::Form::Mapping { keys: &[#keys] } };
@@ -120,14 +120,14 @@ fn mapping(fields: &FieldsNamed, whole: &Row) -> Result<(TokenStream, TokenStrea
 }
 
 /// The keys of a mapping.
-fn keys(fields: &FieldsNamed, whole: &Row) -> Result<TokenStream> {
+fn keys(fields: &FieldsNamed, whole: &KeyRow) -> Result<TokenStream> {
     let mut keys = TokenStream::new();
     for field in &fields.named {
-        let row = Row::among(&field.attrs, whole)?;
+        let row = KeyRow::among(&field.attrs, whole)?;
         let measure = row.measure("NONE");
         let name = row.name.or(field.ident.as_ref().map(Ident::to_string)).unwrap_or_default();
         let (about, value) = (documentation(&field.attrs), &field.ty);
-        keys.extend(quote! { crate::node::Key::of::<#value>(#name, #about, &#measure), });
+        keys.extend(quote! { crate::node::Key::new::<#value>(#name, #about, &#measure), });
     }
     Ok(keys)
 }
@@ -145,13 +145,13 @@ fn values(fields: &FieldsNamed) -> TokenStream {
 /// Form and reading of a choice.
 fn choice(
     variants: &syn::punctuated::Punctuated<syn::Variant, syn::Token![,]>,
-    whole: &Row,
+    whole: &KeyRow,
 ) -> Result<(TokenStream, TokenStream)> {
     let (mut forms, mut names, mut arms) = (TokenStream::new(), TokenStream::new(), TokenStream::new());
     for (index, variant) in variants.iter().enumerate() {
         let name = &variant.ident;
         let (word, about) = (snake_case(&name.to_string()), documentation(&variant.attrs));
-        let measure = Row::among(&variant.attrs, whole)?.measure("INHERITED");
+        let measure = KeyRow::among(&variant.attrs, whole)?.measure("INHERITED");
         let (content, arm) = match &variant.fields {
             Fields::Unit => {
                 let content = quote! { content: crate::node::Form::Word, is_bare: false };

@@ -58,7 +58,7 @@ pub struct Body {
     /// Mass properties about the origin of the body's frame; `None` for a massless frame.
     pub inertia: Option<Inertia>,
     /// The named parts combined into it, for tables.
-    pub parts: Vec<Part>,
+    pub parts: Vec<LinkPart>,
     /// Length along x for a rigid element, 0 otherwise, m; for pictures and moments along the beam.
     pub length: Value,
 }
@@ -109,7 +109,7 @@ pub struct Inertia {
 
 /// A named part of a body.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct LinkPart {
     /// Name as written by the user.
     pub name: String,
     /// Mass, kg.

@@ -287,7 +287,7 @@ pub fn twist_springs<'a>(
 impl Chain {
     /// The forces of a group.
     #[must_use]
-    pub fn of(&self, group: Group) -> &[Force] {
+    pub fn forces_of_group(&self, group: Group) -> &[Force] {
         let first = self.forces.partition_point(|force| force.group < group);
         let end = self.forces.partition_point(|force| force.group <= group);
         &self.forces[first..end]
@@ -296,7 +296,7 @@ impl Chain {
     /// Elements between two points, and couplings of coordinates.
     #[must_use]
     pub fn connectors(&self) -> &[Force] {
-        self.of(Group::Connectors)
+        self.forces_of_group(Group::Connectors)
     }
 
     /// Coordinates that follow others, through springs or exactly.
@@ -307,18 +307,18 @@ impl Chain {
 
     /// Springs and dampers between the elements of flexible links.
     pub fn element_springs(&self) -> impl Iterator<Item = &Spring> {
-        self.of(Group::Elements).iter().filter_map(Force::spring)
+        self.forces_of_group(Group::Elements).iter().filter_map(Force::spring)
     }
 
     /// Whether a coordinate is one of an element of a flexible link.
     #[must_use]
     pub fn is_of_element(&self, id: CoordinateId) -> bool {
-        self.of(Group::Elements).iter().any(|spring| spring.coordinate() == Some(id))
+        self.forces_of_group(Group::Elements).iter().any(|spring| spring.coordinate() == Some(id))
     }
 
     /// Joints with friction.
     pub fn frictions(&self) -> impl Iterator<Item = (CoordinateId, &Friction)> {
-        self.of(Group::Friction).iter().filter_map(|force| match &force.law {
+        self.forces_of_group(Group::Friction).iter().filter_map(|force| match &force.law {
             Law::Friction(friction) => Some((force.coordinate()?, friction)),
             _ => None,
         })
@@ -332,7 +332,8 @@ impl Chain {
     /// Coordinates with end stops, each once.
     #[must_use]
     pub fn stopped(&self) -> Vec<CoordinateId> {
-        let mut stopped: Vec<CoordinateId> = self.of(Group::Stops).iter().filter_map(Force::coordinate).collect();
+        let mut stopped: Vec<CoordinateId> =
+            self.forces_of_group(Group::Stops).iter().filter_map(Force::coordinate).collect();
         stopped.dedup();
         stopped
     }

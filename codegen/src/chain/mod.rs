@@ -31,7 +31,7 @@ mod value;
 
 pub use beam::{Beam, Inside, Moduli, Outline, Section};
 pub use beam_axis::{BeamAxis, Division, Stretch};
-pub use body::{Axis, Body, Coordinate, Inertia, Part, Step};
+pub use body::{Axis, Body, Coordinate, Inertia, LinkPart, Step};
 pub use crane_quantities::{Bound, ConditionInfo, CoordinateKind, EventInfo, JoinsInfo, Moment, Refusal, Side};
 pub use cut::Cut;
 pub use cylinder::{Cylinder, Linkage, Pin, Pump, Valve};
@@ -49,7 +49,7 @@ pub use result_names::ResultNames;
 pub use run::{Analyses, Run};
 pub use shape::{Form, Shape, Surface};
 pub use stage::Stage;
-pub use strain::{Attachment, Line, LinePart, PadDirection, Sliding, Strain, Turning};
+pub use strain::{Attachment, LinePart, PadDirection, Sliding, Strain, StrainLine, Turning};
 pub use support::{Support, SupportKinematics};
 pub use value::{ParameterId, Value};
 

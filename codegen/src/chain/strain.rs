@@ -10,7 +10,7 @@ pub enum Strain {
     /// A coordinate, m or rad.
     Coordinate(CoordinateId),
     /// The length of a line through points, m.
-    Line(Line),
+    Line(StrainLine),
     /// `q_j − r q_i`, m or rad: how far a coordinate is from the position given by its leader.
     Coupling {
         /// j
@@ -74,7 +74,7 @@ pub enum PadDirection {
 
 /// A line through points, straight between them: from one end to the other, for a rope over the sheaves between.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct StrainLine {
     /// Its points in order; at least two.
     pub points: Vec<Attachment>,
     /// How many times its last part counts: the falls of a block and tackle.
@@ -102,7 +102,7 @@ pub struct Attachment {
 impl Strain {
     /// The line, if it is the length of one.
     #[must_use]
-    pub fn line(&self) -> Option<&Line> {
+    pub fn line(&self) -> Option<&StrainLine> {
         match self {
             Strain::Line(line) => Some(line),
             Strain::Coordinate(_)
@@ -150,11 +150,11 @@ impl Strain {
     }
 }
 
-impl Line {
+impl StrainLine {
     /// A straight line between two points.
     #[must_use]
     pub fn between(ends: [Attachment; 2]) -> Self {
-        Line { points: ends.into(), falls: 1 }
+        StrainLine { points: ends.into(), falls: 1 }
     }
 
     /// Its straight parts, in order.
@@ -255,13 +255,13 @@ impl Chain {
 
     /// The lengths of the straight parts of a line at a pose, m.
     #[must_use]
-    pub fn distances(&self, line: &Line, q: &[f64], parameters: &[f64]) -> Vec<f64> {
+    pub fn distances(&self, line: &StrainLine, q: &[f64], parameters: &[f64]) -> Vec<f64> {
         line.parts().map(|part| self.distance(part.ends, q, parameters)).collect()
     }
 
     /// The length of a line at a pose, m.
     #[must_use]
-    pub fn length(&self, line: &Line, q: &[f64], parameters: &[f64]) -> f64 {
+    pub fn length(&self, line: &StrainLine, q: &[f64], parameters: &[f64]) -> f64 {
         let distances = self.distances(line, q, parameters);
         line.parts().zip(distances).map(|(part, distance)| f64::from(part.falls) * distance).sum()
     }

@@ -12,7 +12,7 @@ pub use definition::Rule;
 pub(crate) use definition::{catalogue, is_one_line, printable, quoted};
 pub(crate) use nearest::{list, suggest};
 pub use nearest::{nearest, similar};
-pub use source::{MAX_BYTES, Part, SourceFile, Span, WrongPlace};
+pub use source::{MAX_BYTES, SourceFile, SourcePart, Span, WrongPlace};
 
 use std::fmt;
 

@@ -99,12 +99,12 @@ impl SourceFile {
 
     /// Its parts, each of which extends the previous one; usually there is only one, the whole file.
     #[must_use]
-    pub fn parts(&self) -> Vec<Part<'_>> {
+    pub fn parts(&self) -> Vec<SourcePart<'_>> {
         self.sections().into_iter().filter(|(marker, _)| *marker == PART).map(|(_, part)| part).collect()
     }
 
     /// The text of a data file to which the part around a byte refers.
-    pub(crate) fn data(&self, name: &str, byte: usize) -> Option<Part<'_>> {
+    pub(crate) fn data(&self, name: &str, byte: usize) -> Option<SourcePart<'_>> {
         let sections = self.sections();
         let before = sections.iter().rev().skip_while(|(_, part)| part.start > byte).skip(1);
         let data = before.take_while(|(marker, _)| *marker == DATA).map(|(_, part)| part);
@@ -112,9 +112,9 @@ impl SourceFile {
     }
 
     /// Its parts and the data files that they refer to, with their markers.
-    fn sections(&self) -> Vec<(&'static str, Part<'_>)> {
+    fn sections(&self) -> Vec<(&'static str, SourcePart<'_>)> {
         if !self.is_assembled() {
-            return vec![(PART, Part { name: &self.name, start: 0, text: &self.text })];
+            return vec![(PART, SourcePart { name: &self.name, start: 0, text: &self.text })];
         }
         let begins_of = |marker: &'static str| self.text.match_indices(marker).map(move |(at, _)| (at, marker));
         let at_line = |&(at, _): &(usize, &str)| at == 0 || self.text[..at].ends_with('\n');
@@ -126,13 +126,13 @@ impl SourceFile {
             let start = end.min(line + 1);
             // The last one is this file, under the name that the user gave it.
             let name = if end == self.text.len() { &self.name } else { self.text[begin + marker.len()..line].trim() };
-            (marker, Part { name, start, text: &self.text[start..end] })
+            (marker, SourcePart { name, start, text: &self.text[start..end] })
         };
         begins.iter().zip(ends).map(section).collect()
     }
 
     /// The part or data file that contains a byte.
-    pub(crate) fn part(&self, byte: usize) -> Part<'_> {
+    pub(crate) fn part(&self, byte: usize) -> SourcePart<'_> {
         self.places().part(byte)
     }
 
@@ -190,15 +190,15 @@ pub(crate) struct Places<'a> {
     source: &'a SourceFile,
     /// The first byte of each line.
     lines: Vec<usize>,
-    sections: Vec<(&'static str, Part<'a>)>,
+    sections: Vec<(&'static str, SourcePart<'a>)>,
 }
 
 impl<'a> Places<'a> {
     /// As [`SourceFile::part`].
-    pub(crate) fn part(&self, byte: usize) -> Part<'a> {
+    pub(crate) fn part(&self, byte: usize) -> SourcePart<'a> {
         let after = self.sections.partition_point(|(_, part)| part.start <= byte);
         let found = self.sections.get(after.saturating_sub(1));
-        found.map_or(Part { name: &self.source.name, start: 0, text: &self.source.text }, |(_, part)| *part)
+        found.map_or(SourcePart { name: &self.source.name, start: 0, text: &self.source.text }, |(_, part)| *part)
     }
 
     /// As [`SourceFile::position`].
@@ -218,7 +218,7 @@ fn marked(marker: &str, name: &str, text: &str) -> String {
 
 /// A part of a source file: the text of one of the files that it is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Part<'a> {
+pub struct SourcePart<'a> {
     /// Name shown in messages.
     pub name: &'a str,
     /// Its first byte in the text of the whole.

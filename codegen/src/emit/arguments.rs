@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 use syn::{Stmt, parse_quote};
 
 use super::number::Number;
-use super::writer::{Used, Writer};
+use super::writer::{RustWriter, Used};
 use crate::lower::Statement;
 use crate::program::Argument;
 
@@ -21,7 +21,7 @@ const VECTORS: [(Argument, &str); 6] = [
 
 /// Name and type of an argument, in functions and in the methods that call them.
 pub fn argument_name(argument: Argument, number: Number) -> (&'static str, TokenStream) {
-    let number = number.of();
+    let number = number.type_tokens();
     match argument {
         Argument::Time => ("t", quote!(#number)),
         Argument::Position => ("q", quote!(&SVector<#number, N>)),
@@ -39,7 +39,7 @@ pub fn argument_name(argument: Argument, number: Number) -> (&'static str, Token
     }
 }
 
-impl Writer<'_> {
+impl RustWriter<'_> {
     /// Arguments of the function itself: always all of them, whether used or not.
     pub(super) fn all_inputs(&self) -> Vec<TokenStream> {
         let mut used = Used::new();

@@ -54,7 +54,7 @@ pub fn crane(
                 #[doc = " The values break a rule of the spec language."]
                 pub fn new(params: Params) -> Result<Self, ParameterError> {
                     params.check()?;
-                    Ok(Crane { constants: Constants::of(&params) #inputs })
+                    Ok(Crane { constants: Constants::new(&params) #inputs })
                 }
 
                 #[doc = " Values of the live parameters."]
@@ -66,7 +66,7 @@ pub fn crane(
         });
     }
     let default = match (live, has_inputs) {
-        (true, _) => quote!(Crane { constants: Constants::of(&Params::default()) #inputs }),
+        (true, _) => quote!(Crane { constants: Constants::new(&Params::default()) #inputs }),
         (false, true) => quote!(Crane { inputs: NOT_SET }),
         (false, false) => quote!(Crane),
     };
@@ -346,7 +346,7 @@ fn method(code: &LoweredFunction) -> TokenStream {
             }
         }
         _ => {
-            let result = Storage::of(function, Number::Single).public_type();
+            let result = Storage::new(function, Number::Single).public_type();
             quote! {
                 fn #name(&self, #(#names: #types),*) -> #result {
                     #name(#(#arguments),*)

@@ -6,11 +6,11 @@ use super::arguments::argument_name;
 use super::arithmetic::{call, difference, element, field, method, negative, product, quotient, sum, variable};
 use super::names::{Names, field_name};
 use super::number::Number;
-use super::writer::{Used, Writer};
+use super::writer::{RustWriter, Used};
 use crate::program::Argument;
 use crate::symbolic::{ExprId, Op};
 
-impl Writer<'_> {
+impl RustWriter<'_> {
     /// An argument of a statement: a variable, a number, a constant, or an inlined operation.
     pub(super) fn expression(&self, id: ExprId, names: &mut Names, used: &mut Used) -> Expr {
         let program = &self.lowered.program;
@@ -25,7 +25,7 @@ impl Writer<'_> {
                 field(field(variable("c"), "params"), &field_name(&program.symbol(symbol).name))
             }
             _ if self.code.inlined[id.index()] => self.operation(id, names, used),
-            _ => variable(&names.of(id)),
+            _ => variable(&names.name(id)),
         }
     }
 

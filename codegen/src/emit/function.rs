@@ -11,17 +11,17 @@ use super::names::Names;
 use super::number::Number;
 use super::print::comment;
 use super::shape::{Handover, Storage};
-use super::writer::{Used, Writer, local, pattern};
+use super::writer::{RustWriter, Used, local, pattern};
 use crate::lower::{LoweredFunction, LoweredProgram, Statement};
 use crate::symbolic::{ExprId, Op};
 
 /// The items of one function: itself, and its pieces if it is long.
 pub fn function(lowered: &LoweredProgram, code: &LoweredFunction, labels: &Labels, number: Number) -> Vec<syn::Item> {
-    let writer = Writer { lowered, code, storage: Storage::of(code.function, number), labels, number };
+    let writer = RustWriter { lowered, code, storage: Storage::new(code.function, number), labels, number };
     if code.pieces.len() == 1 { vec![writer.whole()] } else { writer.in_pieces() }
 }
 
-impl Writer<'_> {
+impl RustWriter<'_> {
     fn whole(&self) -> syn::Item {
         let mut item = self.shell();
         let (mut body, used) = self.piece(&self.code.pieces[0]);
@@ -67,7 +67,7 @@ impl Writer<'_> {
         let mut item = self.shell();
         let storage = self.storage.storage_type();
         let kept = integer(self.code.kept);
-        let (number, zero) = (self.number.of(), self.number.literal(0.0));
+        let (number, zero) = (self.number.type_tokens(), self.number.literal(0.0));
         let mut statements = self.begin();
         if self.code.kept > 0 {
             statements.push(parse_quote!(let mut kept = [#zero; #kept];));
@@ -167,7 +167,7 @@ impl Writer<'_> {
             match statement {
                 &Statement::Input(id) => {
                     let source = self.input(id, used);
-                    let name = names.of(id);
+                    let name = names.name(id);
                     if !matches!(&source, Expr::Path(path) if path.path.is_ident(&name)) {
                         pending.push(local(&name, &source));
                     }
@@ -222,12 +222,12 @@ impl Writer<'_> {
                 }
                 &Statement::Let(id) => {
                     let value = self.operation(id, names, used);
-                    pending.push(local(&names.of(id), &value));
+                    pending.push(local(&names.name(id), &value));
                 }
                 &Statement::Output { slot, value } => {
                     if !sweeping && group != Some(self.storage.group(slot)) {
                         group = Some(self.storage.group(slot));
-                        if let Some(label) = self.labels.of(self.code.function, slot) {
+                        if let Some(label) = self.labels.label(self.code.function, slot) {
                             statements.push(comment(&label));
                         }
                     }
@@ -245,11 +245,11 @@ impl Writer<'_> {
                     statements.append(&mut pending);
                 }
                 &Statement::Keep { slot, value } => {
-                    let (target, value) = (element(variable("kept"), slot), variable(&names.of(value)));
+                    let (target, value) = (element(variable("kept"), slot), variable(&names.name(value)));
                     pending.push(parse_quote!(#target = #value;));
                 }
                 &Statement::Fetch { slot, value } => {
-                    pending.push(local(&names.of(value), &element(variable("kept"), slot)));
+                    pending.push(local(&names.name(value), &element(variable("kept"), slot)));
                 }
             }
         }

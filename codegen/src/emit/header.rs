@@ -17,7 +17,7 @@ pub fn header(chain: &Chain, report: &Report, spec_file: &str) -> String {
             chain.coordinates.len(),
             chain.bodies.len(),
             chain.supports.len(),
-            chain.of(Group::Elements).len(),
+            chain.forces_of_group(Group::Elements).len(),
             chain.drives.len(),
         ),
         "SI units, angles in rad; the world's z axis points up.".into(),

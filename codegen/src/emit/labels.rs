@@ -30,7 +30,7 @@ impl<'a> Labels<'a> {
     }
 
     /// Description of the group of results that starts at a slot.
-    pub fn of(&self, function: &Function, slot: usize) -> Option<String> {
+    pub fn label(&self, function: &Function, slot: usize) -> Option<String> {
         let chain = self.chain;
         let coordinate = |i: usize| chain.coordinates[i].name.as_str();
         match &function.shape {

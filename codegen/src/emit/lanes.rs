@@ -95,7 +95,7 @@ pub fn lanes(chain: &Chain, lowered: &LoweredProgram, labels: &Labels) -> (Item,
             impl Cranes {
                 #[doc = " Eight cranes with these values of their live parameters, which each crane has checked."]
                 pub(super) fn new(params: &Params #taken) -> Self {
-                    Cranes { constants: Constants::of(params) #kept }
+                    Cranes { constants: Constants::new(params) #kept }
                 }
             }
         });

@@ -8,11 +8,11 @@ use super::arithmetic::{at, element, integer, place, variable};
 use super::names::{Names, OF_LOOPS, of_loop};
 use super::number::Number;
 use super::print::comment;
-use super::writer::{Used, Writer, pattern};
+use super::writer::{RustWriter, Used, pattern};
 use crate::lower::{LiveOut, Source, Statement, SweepPosition};
 use crate::symbolic::ExprId;
 
-impl Writer<'_> {
+impl RustWriter<'_> {
     /// The initial values of a loop, and the loop.
     pub(super) fn loop_statements(
         &self,
@@ -23,7 +23,7 @@ impl Writer<'_> {
     ) -> Vec<Stmt> {
         let rolled = &self.code.rerolled.loops[of];
         let [numbers, gathered, loop_carried, saved] = OF_LOOPS.map(|name| owned(name, of));
-        let (number, iterations) = (self.number.of(), integer(rolled.iterations));
+        let (number, iterations) = (self.number.type_tokens(), integer(rolled.iterations));
         let [first, last] = &rolled.ends;
         let mut statements = vec![comment(&format!("{} to {}", position_of(first), last.body))];
         if !rolled.numbers.is_empty() {

@@ -84,7 +84,7 @@ impl<'p> Names<'p> {
     }
 
     /// The name of a value.
-    pub fn of(&mut self, id: ExprId) -> String {
+    pub fn name(&mut self, id: ExprId) -> String {
         if let Some(name) = self.given.get(&id) {
             return name.clone();
         }

@@ -17,7 +17,7 @@ pub enum Number {
 
 impl Number {
     /// Its type.
-    pub fn of(self) -> TokenStream {
+    pub fn type_tokens(self) -> TokenStream {
         match self {
             Number::Single => quote!(f64),
             Number::Lanes => quote!(f64x8),

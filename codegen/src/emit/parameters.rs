@@ -25,7 +25,7 @@ pub fn parameters(chain: &Chain, lowered: &LoweredProgram, labels: &Labels, numb
     let defaults = chain.parameters.iter().map(|p| number.literal(p.default));
     let stored: Vec<_> = lowered.constants.stored.iter().map(|id| format_ident!("{}", labels.constant(*id))).collect();
     let body = constants_body(lowered, labels, number);
-    let number = number.of();
+    let number = number.type_tokens();
     vec![
         parse_quote! {
             #[doc = " Values that stay live at run time."]
@@ -51,7 +51,7 @@ pub fn parameters(chain: &Chain, lowered: &LoweredProgram, labels: &Labels, numb
         },
         parse_quote! {
             impl Constants {
-                fn of(params: &Params) -> Self {
+                fn new(params: &Params) -> Self {
                     #(#body)*
                     Constants { params: *params, #(#stored),* }
                 }

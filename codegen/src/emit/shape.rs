@@ -28,7 +28,7 @@ pub struct Storage<'f> {
 }
 
 impl<'f> Storage<'f> {
-    pub fn of(function: &'f Function, number: Number) -> Self {
+    pub fn new(function: &'f Function, number: Number) -> Self {
         Storage { shape: &function.shape, number }
     }
 
@@ -45,7 +45,7 @@ impl<'f> Storage<'f> {
 
     /// Type that the function returns, or whose reference it takes.
     pub fn public_type(&self) -> TokenStream {
-        let number = self.number.of();
+        let number = self.number.type_tokens();
         match self.shape {
             Shape::Scalar => quote!(f64),
             Shape::Vector(_) | Shape::MassAndBias(_) | Shape::Columns { bias: true, .. } => quote!(SVector<#number, N>),
@@ -79,7 +79,7 @@ impl<'f> Storage<'f> {
 
     /// Type of the variable `out` that collects the result.
     pub fn storage_type(&self) -> TokenStream {
-        let number = self.number.of();
+        let number = self.number.type_tokens();
         match self.shape {
             Shape::Vector(_) => quote!([#number; N]),
             Shape::Symmetric(_) => quote!([[f64; N]; N]),

@@ -15,7 +15,7 @@ use crate::program::Argument;
 use crate::symbolic::ExprId;
 
 /// Writes one function.
-pub struct Writer<'a> {
+pub struct RustWriter<'a> {
     pub(super) lowered: &'a LoweredProgram<'a>,
     pub(super) code: &'a LoweredFunction<'a>,
     pub(super) storage: Storage<'a>,
@@ -34,5 +34,5 @@ pub fn local(name: &str, value: &Expr) -> Stmt {
 
 /// The name of a value, or `_` if it is not needed.
 pub fn pattern(id: Option<ExprId>, names: &mut Names) -> TokenStream {
-    id.map_or_else(|| quote!(_), |id| Ident::new(&names.of(id), Span::call_site()).into_token_stream())
+    id.map_or_else(|| quote!(_), |id| Ident::new(&names.name(id), Span::call_site()).into_token_stream())
 }

@@ -13,7 +13,7 @@ use crate::program::{Argument, Function, Product, Shape};
 use crate::symbolic::{ExprId, Op};
 
 /// Writes functions.
-pub struct Writer<'a> {
+pub struct CWriter<'a> {
     pub chain: &'a Chain,
     pub lowered: &'a LoweredProgram<'a>,
     pub labels: &'a Labels<'a>,
@@ -25,7 +25,7 @@ pub struct Writer<'a> {
 /// What a piece of a function reads.
 type Used = BTreeSet<Argument>;
 
-impl Writer<'_> {
+impl CWriter<'_> {
     /// The definition of a function, after those of its pieces.
     pub fn function(&self, code: &LoweredFunction) -> String {
         let (signature, numbers) = (self.signature(code.function), numbers(&code.function.shape));
@@ -206,7 +206,7 @@ impl Writer<'_> {
 
 /// The body of a piece while it is written.
 struct Body<'a> {
-    writer: &'a Writer<'a>,
+    writer: &'a CWriter<'a>,
     code: &'a LoweredFunction<'a>,
     names: Names<'a>,
     /// Of the [`variables`](super::variables).
@@ -221,7 +221,7 @@ impl Body<'_> {
         let f = self.writer.precision.suffix();
         match statement {
             &Statement::Input(id) => {
-                let (source, name) = (self.input(id), self.names.of(id));
+                let (source, name) = (self.input(id), self.names.name(id));
                 if source != name {
                     self.local(&name, &source);
                 }
@@ -231,7 +231,7 @@ impl Body<'_> {
                     let angle = self.expression(known.angle);
                     for (id, function) in [(known.sin, "sin"), (known.cos, "cos")] {
                         if let Some(id) = id {
-                            let name = self.names.of(id);
+                            let name = self.names.name(id);
                             self.local(&name, &format!("{function}{f}({})", angle.text()));
                         }
                     }
@@ -245,7 +245,7 @@ impl Body<'_> {
                     self.line(&format!("stumpff({}, {row});", argument.text()));
                     for (k, id) in known.values.iter().enumerate() {
                         if let Some(id) = id {
-                            let name = self.names.of(*id);
+                            let name = self.names.name(*id);
                             self.local(&name, &format!("{row}[{k}]"));
                         }
                     }
@@ -259,7 +259,7 @@ impl Body<'_> {
             }
             &Statement::Let(id) => {
                 let value = self.operation(id);
-                let name = self.names.of(id);
+                let name = self.names.name(id);
                 self.local(&name, value.text());
             }
             &Statement::Output { slot, value } => {
@@ -273,11 +273,11 @@ impl Body<'_> {
                 self.line(&format!("{written}{};", value.text()));
             }
             &Statement::Keep { slot, value } => {
-                let name = self.names.of(value);
+                let name = self.names.name(value);
                 self.line(&format!("kept[{slot}] = {name};"));
             }
             &Statement::Fetch { slot, value } => {
-                let name = self.names.of(value);
+                let name = self.names.name(value);
                 self.local(&name, &format!("kept[{slot}]"));
             }
             Statement::Loop { .. } => unreachable!("chains without loops have none"),
@@ -307,7 +307,7 @@ impl Body<'_> {
                 Expression::atom(format!("c->params.{}", field(&program.symbol(symbol).name)))
             }
             _ if self.code.inlined[id.index()] => self.operation(id),
-            _ => Expression::atom(self.names.of(id)),
+            _ => Expression::atom(self.names.name(id)),
         }
     }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::Precision;
-use super::function::{Writer, numbers};
+use super::function::{CWriter, numbers};
 use super::words::{comment, field};
 use crate::chain::{Chain, CoordinateKind, Input};
 use crate::program::{Argument, Count, Extent, Function, FunctionId, Product, Shape, Struct};
@@ -20,8 +20,8 @@ fn origin(chain: &Chain) -> String {
 }
 
 /// The text of the header.
-pub fn header(writer: &Writer) -> String {
-    let Writer { chain, lowered, precision, .. } = writer;
+pub fn header(writer: &CWriter) -> String {
+    let CWriter { chain, lowered, precision, .. } = writer;
     let guard = format!("{}_H", chain.name.to_uppercase());
     let mut text = format!("/* {} */\n\n", origin(chain));
     let _ = write!(text, "{}\n\n#ifndef {guard}\n#define {guard}\n\n", about(*precision));
@@ -71,8 +71,8 @@ fn coordinates(chain: &Chain) -> String {
 }
 
 /// Live parameters and the constants computed from them; empty if there are none.
-fn parameters(writer: &Writer) -> String {
-    let Writer { chain, lowered, precision, .. } = writer;
+fn parameters(writer: &CWriter) -> String {
+    let CWriter { chain, lowered, precision, .. } = writer;
     if chain.parameters.is_empty() {
         return String::new();
     }
@@ -108,8 +108,8 @@ fn parameters(writer: &Writer) -> String {
 }
 
 /// Inputs by name, and the functions that set them; empty if there are none.
-fn inputs(writer: &Writer) -> String {
-    let Writer { chain, precision, .. } = writer;
+fn inputs(writer: &CWriter) -> String {
+    let CWriter { chain, precision, .. } = writer;
     if chain.inputs.is_empty() {
         return String::new();
     }
@@ -148,7 +148,7 @@ fn macro_name(chain: &Chain) -> String {
 }
 
 /// What a function computes, from which arguments, and the shape of its result.
-fn documentation(writer: &Writer, function: &Function, operations: usize) -> String {
+fn documentation(writer: &CWriter, function: &Function, operations: usize) -> String {
     let mut text = format!("/* {}{}\n   {}\n", product(function), comment(function.doc), comment(function.equation));
     for argument in &function.arguments {
         let _ = writeln!(text, "   {}", of_argument(function, *argument));

@@ -13,7 +13,7 @@ mod words;
 use crate::chain::Chain;
 use crate::emit::Labels;
 use crate::lower::LoweredProgram;
-use function::Writer;
+use function::CWriter;
 
 pub use variables::variables;
 
@@ -70,7 +70,7 @@ pub fn emit_c(
     header: &str,
 ) -> CCode {
     let labels = Labels::new(chain, lowered);
-    let writer = Writer { chain, lowered, labels: &labels, parameters, precision };
+    let writer = CWriter { chain, lowered, labels: &labels, parameters, precision };
     let functions: String = lowered.functions.iter().map(|code| writer.function(code)).collect();
     let (constants, inputs) = (writer.constants(), writer.inputs());
     let body = format!("{constants}{inputs}{functions}");

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::function::Writer;
+use super::function::CWriter;
 use super::words::field;
 use crate::chain::Input;
 use crate::program::{Argument, Product, Program, Symbol};
@@ -15,7 +15,7 @@ pub fn variables(program: &Program) -> Vec<SymbolId> {
     program.differentiated_by().filter(|id| is_value(program.symbol(*id))).collect()
 }
 
-impl Writer<'_> {
+impl CWriter<'_> {
     /// The fields of the [`variables`], in their order.
     pub fn fields(&self) -> Vec<String> {
         let program = &self.lowered.program;

@@ -22,7 +22,7 @@ pub(super) struct Lump {
 
 impl Lump {
     /// From a pseudo-inertia: with `S = ∫ r rᵀ dm − m c cᵀ`, the tensor is `tr(S) 1 − S`.
-    pub(super) fn of(inertia: &Inertia, parameters: &[f64]) -> Self {
+    pub(super) fn from_inertia(inertia: &Inertia, parameters: &[f64]) -> Self {
         let mass = inertia.mass.at(parameters);
         let com = inertia.first.each_ref().map(|first| if mass == 0.0 { 0.0 } else { first.at(parameters) / mass });
         let second = inertia.second.each_ref().map(|second| second.at(parameters));
@@ -139,10 +139,10 @@ mod tests {
     #[test]
     fn parallel_axes_there_and_back() {
         let (mass, com, tensor) = (12.0, [1.0, -2.0, 3.0], [52.0, 40.0, 20.0, -1.0, 2.0, -3.0]);
-        let back = Lump::of(&about_com(mass.into(), &com.map(Into::into), &tensor.map(Into::into)), &[]);
+        let back = Lump::from_inertia(&about_com(mass.into(), &com.map(Into::into), &tensor.map(Into::into)), &[]);
         assert_eq!((back.mass, back.com, back.tensor), (mass, com, tensor));
         // A point mass has no inertia, not even from rounding.
-        assert_eq!(Lump::of(&point(0.3.into(), &[0.1.into(), 0.7.into(), 1.3.into()]), &[]).tensor, [0.0; 6]);
+        assert_eq!(Lump::from_inertia(&point(0.3.into(), &[0.1.into(), 0.7.into(), 1.3.into()]), &[]).tensor, [0.0; 6]);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::look::{Look, colours, on as looks_on, surfaces};
 use super::mass::Lump;
-use super::names::{self, Place};
+use super::names::{self, FrameOfBody};
 use super::rotation::{length as distance, quaternion};
 use super::springs::{JointSpring, linear_rows, on};
 use super::xml::{Xml, number_text, numbers};
@@ -141,7 +141,7 @@ fn bodies(
     xml: &mut Xml,
     chain: &Chain,
     parameters: &[f64],
-    (sites, joints): (&[Place], &[String]),
+    (sites, joints): (&[FrameOfBody], &[String]),
     show: impl Fn(&mut Xml, BodyId),
 ) {
     let mut taken: BTreeSet<String> = names::frames(chain, parameters).into_iter().map(|frame| frame.name).collect();
@@ -174,7 +174,7 @@ fn bodies(
         let moves = path.iter().any(|step| matches!(step, Step::Move(_)));
         match &body.inertia {
             Some(inertia) => {
-                let lump = Lump::of(inertia, parameters);
+                let lump = Lump::from_inertia(inertia, parameters);
                 inertial(xml, &Lump { mass: lump.mass.max(LEAST), ..lump });
             }
             None if moves => inertial(xml, &Lump { mass: LEAST, com: [0.0; 3], tensor: [0.0; 6] }),
@@ -190,9 +190,9 @@ fn bodies(
 }
 
 /// Frames, and the points of interest that are not the origins of frames with their names.
-fn sites(chain: &Chain, parameters: &[f64]) -> Vec<Place> {
+fn sites(chain: &Chain, parameters: &[f64]) -> Vec<FrameOfBody> {
     let mut sites = names::frames(chain, parameters);
-    let stands_for = |frame: &Place, point: &Place| {
+    let stands_for = |frame: &FrameOfBody, point: &FrameOfBody| {
         (frame.body, frame.frame.origin, &frame.name) == (point.body, point.frame.origin, &point.name)
     };
     let mut points = names::points(chain, parameters);
@@ -205,8 +205,8 @@ fn sites(chain: &Chain, parameters: &[f64]) -> Vec<Place> {
     sites
 }
 
-fn sites_on(xml: &mut Xml, sites: &[Place], body: Option<BodyId>) {
-    for Place { name, frame, .. } in sites.iter().filter(|site| site.body == body) {
+fn sites_on(xml: &mut Xml, sites: &[FrameOfBody], body: Option<BodyId>) {
+    for FrameOfBody { name, frame, .. } in sites.iter().filter(|site| site.body == body) {
         let mut attributes = vec![("name", name.clone()), ("pos", numbers(&frame.origin))];
         if frame.axes != Frame::WORLD.axes {
             attributes.push(("quat", numbers(&quaternion(frame))));

@@ -60,7 +60,7 @@ pub fn approximations(chain: &Chain) -> Option<String> {
     });
     let joints = [Group::Stops, Group::Friction]
         .iter()
-        .any(|group| !chain.of(*group).is_empty())
+        .any(|group| !chain.forces_of_group(*group).is_empty())
         .then(|| "End stops and friction of joints are left out.".to_owned());
     let loads = (!chain.loads.is_empty()).then(|| "Loads applied from outside are left out.".to_owned());
     let has = |of_kind: fn(&Strain) -> bool| chain.connectors().iter().any(|connector| of_kind(&connector.strain));
@@ -123,7 +123,7 @@ fn shown<'l>(
         }
         let next = chain.bodies.iter().skip(index).position(|other| other.parent == Some(BodyId(index)));
         let next = next.map(|next| placements[index + next].origin);
-        let com = body.inertia.as_ref().map(|inertia| mass::Lump::of(inertia, parameters).com);
+        let com = body.inertia.as_ref().map(|inertia| mass::Lump::from_inertia(inertia, parameters).com);
         [next, com].into_iter().flatten().find(|end| rotation::length(*end) > SHORTEST_BAR)
     };
     let bars = chain.bodies.iter().enumerate().map(end).collect();

@@ -9,30 +9,33 @@ use crate::chain::{BodyId, Chain, CoordinateId, Frame, NamedFrame};
 pub(super) const WORLD: &str = "world";
 
 /// A place with axes on a body, or in the world.
-pub(super) struct Place {
+pub(super) struct FrameOfBody {
     pub(super) name: String,
     pub(super) body: Option<BodyId>,
     pub(super) frame: Frame,
 }
 
 /// Frames that the spec names, except where a body or the ground has this name and this place anyway.
-pub(super) fn frames(chain: &Chain, parameters: &[f64]) -> Vec<Place> {
-    let place =
-        |named: &NamedFrame| Place { name: named.name.clone(), body: named.body, frame: named.pose(chain, parameters) };
+pub(super) fn frames(chain: &Chain, parameters: &[f64]) -> Vec<FrameOfBody> {
+    let place = |named: &NamedFrame| FrameOfBody {
+        name: named.name.clone(),
+        body: named.body,
+        frame: named.pose(chain, parameters),
+    };
     let bodies = chain.frames(&vec![0.0; chain.coordinates.len()], parameters);
-    let is_ground = |Place { name, body, frame }: &Place| {
+    let is_ground = |FrameOfBody { name, body, frame }: &FrameOfBody| {
         let standing = body.is_none_or(|body| chain.coordinates_of(body).is_empty());
         standing && name == WORLD && body.map_or(*frame, |BodyId(body)| bodies[body].outer(frame)) == Frame::WORLD
     };
-    let is_body = |Place { name, body, frame }: &Place| {
+    let is_body = |FrameOfBody { name, body, frame }: &FrameOfBody| {
         body.is_some_and(|BodyId(body)| chain.bodies[body].name == *name) && *frame == Frame::WORLD
     };
     chain.frames.iter().map(place).filter(|place| !is_ground(place) && !is_body(place)).collect()
 }
 
 /// Points of interest.
-pub(super) fn points(chain: &Chain, parameters: &[f64]) -> Vec<Place> {
-    let place = |point: &crate::chain::Point| Place {
+pub(super) fn points(chain: &Chain, parameters: &[f64]) -> Vec<FrameOfBody> {
+    let place = |point: &crate::chain::Point| FrameOfBody {
         name: point.name.clone(),
         body: Some(point.body),
         frame: Frame { origin: point.position.each_ref().map(|value| value.at(parameters)), ..Frame::WORLD },

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::look::{Look, colours, on};
 use super::mass::Lump;
-use super::names::Place;
+use super::names::FrameOfBody;
 use super::rotation::{along_z, length, roll_pitch_yaw};
 use super::xml::{Xml, number_text, numbers};
 use super::{Inexpressible, RADIUS, approximations, free_name, hinged, names, origin, placements, shown};
@@ -105,12 +105,12 @@ pub fn urdf(chain: &Chain, parameters: &[f64], looks: &[Look]) -> Result<String,
         if parent != *name {
             joint(&mut xml, &mount(name), (&parent, name), &placement, None);
         }
-        let mass = body.inertia.as_ref().map(|inertia| Lump::of(inertia, parameters));
+        let mass = body.inertia.as_ref().map(|inertia| Lump::from_inertia(inertia, parameters));
         link(&mut xml, name, mass.as_ref(), on(&looks, Some(BodyId(index))), bar);
     }
     let points = names::points(chain, parameters).into_iter();
-    let points = points.map(|point| Place { name: free(&format!("{}_point", point.name)), ..point });
-    for Place { name, body, frame } in frames.into_iter().chain(points) {
+    let points = points.map(|point| FrameOfBody { name: free(&format!("{}_point", point.name)), ..point });
+    for FrameOfBody { name, body, frame } in frames.into_iter().chain(points) {
         let carrier = body.map_or(&ground, |BodyId(body)| &bodies[body]);
         joint(&mut xml, &mount(&name), (carrier, &name), &frame, None);
         xml.leaf("link", &[("name", name)]);

@@ -153,7 +153,7 @@ pub(crate) fn stiffness(youngs: &Value, shear: &Value, section: &CrossSection, d
 
 /// A part of a beam with its own section.
 #[derive(Clone, Debug)]
-pub(crate) struct Part {
+pub(crate) struct TaperedPart {
     /// Length, m.
     pub length: f64,
     /// The section at its beginning.
@@ -177,7 +177,7 @@ const SAME: f64 = 1e-9;
 
 /// The portion of one part between two places of a beam of parts.
 struct Piece<'a> {
-    part: &'a Part,
+    part: &'a TaperedPart,
     /// Beginning and end, m from the beginning of the beam.
     ends: [f64; 2],
     /// Beginning of the part, m.
@@ -210,7 +210,7 @@ impl Piece<'_> {
 }
 
 /// The pieces between two places, from consecutive parts.
-fn pieces(parts: &[Part], [from, to]: [f64; 2]) -> Vec<Piece<'_>> {
+fn pieces(parts: &[TaperedPart], [from, to]: [f64; 2]) -> Vec<Piece<'_>> {
     let mut begin = 0.0;
     let mut pieces = Vec::new();
     for (index, part) in parts.iter().enumerate() {
@@ -226,7 +226,7 @@ fn pieces(parts: &[Part], [from, to]: [f64; 2]) -> Vec<Piece<'_>> {
 }
 
 /// The sections of a beam of parts just before and just after a place; at its ends, both are the same.
-fn sections_at(parts: &[Part], x: f64) -> [Option<CrossSection>; 2] {
+fn sections_at(parts: &[TaperedPart], x: f64) -> [Option<CrossSection>; 2] {
     let length: f64 = parts.iter().map(|part| part.length).sum();
     let beside = |ends: [f64; 2]| pieces(parts, ends).first().map(|piece| piece.section(x));
     let (before, after) = (beside([x - 2.0 * SAME, x]), beside([x, x + 2.0 * SAME]));
@@ -246,7 +246,7 @@ pub(crate) enum Distribution {
     /// Parts end to end.
     Parts {
         /// From the beginning to the end.
-        parts: Vec<Part>,
+        parts: Vec<TaperedPart>,
         /// kg/m³
         density: Value,
         /// Mass besides that of the material, kg/m.
@@ -291,7 +291,7 @@ impl Distribution {
 }
 
 /// The element of a beam of parts between two places: mass `∫ μ dx`, and moments of inertia likewise.
-pub(crate) fn element_of_parts(parts: &[Part], ends: [f64; 2], density: &Value, extra: &Value) -> RigidElement {
+pub(crate) fn element_of_parts(parts: &[TaperedPart], ends: [f64; 2], density: &Value, extra: &Value) -> RigidElement {
     let mut inertia: Option<Inertia> = None;
     for piece in pieces(parts, ends) {
         for (x, length) in piece.slices() {
@@ -337,7 +337,7 @@ fn moved(inertia: Inertia, a: &Value) -> Inertia {
 
 /// Stiffness of the spring of a section of a beam of parts: `1/s = ∫ dx/(E J)`, the angle between its ends per unit
 /// moment.
-pub(crate) fn stiffness_of_parts(parts: &[Part], ends: [f64; 2], youngs: &Value, shear: &Value) -> [Value; 3] {
+pub(crate) fn stiffness_of_parts(parts: &[TaperedPart], ends: [f64; 2], youngs: &Value, shear: &Value) -> [Value; 3] {
     let mut compliance = [Value::ZERO, Value::ZERO, Value::ZERO];
     for piece in pieces(parts, ends) {
         for (x, length) in piece.slices() {
@@ -351,7 +351,7 @@ pub(crate) fn stiffness_of_parts(parts: &[Part], ends: [f64; 2], youngs: &Value,
 }
 
 /// Outlines along a beam of parts.
-pub(crate) fn outlines_of_parts(parts: &[Part]) -> Vec<(Value, Outline)> {
+pub(crate) fn outlines_of_parts(parts: &[TaperedPart]) -> Vec<(Value, Outline)> {
     let mut begin = 0.0;
     let mut outlines = Vec::new();
     for part in parts {

@@ -17,7 +17,7 @@ pub struct Constants {
 impl Constants {
     /// The constants that the functions of a program read.
     #[must_use]
-    pub fn of(program: &Program) -> Self {
+    pub fn new(program: &Program) -> Self {
         let is_constant = parameters_alone(program);
         let mut is_stored = vec![false; program.operations.len()];
         let needed = program.needed(program.functions.iter().flat_map(|f| f.outputs.iter().copied()));

@@ -158,7 +158,7 @@ pub struct StumpffArgument {
 /// Lowers a program; equal work at `min_iterations` or more consecutive bodies becomes a loop.
 #[must_use]
 pub fn lower(program: &Program, min_iterations: Option<usize>) -> LoweredProgram<'_> {
-    let constants = Constants::of(program);
+    let constants = Constants::new(program);
     let mut extended = program.clone();
     let mut lower_one = |function| lower_function(&mut extended, &constants, function, min_iterations);
     let functions = program.functions.iter().map(&mut lower_one).collect();

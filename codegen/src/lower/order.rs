@@ -20,7 +20,7 @@ pub(super) fn order(
     function: &Function,
     rerolled: &Rerolled,
 ) -> Vec<Statement> {
-    let mut line = Line {
+    let mut line = OrderedStatements {
         program,
         constants,
         inlined,
@@ -96,7 +96,7 @@ fn slots(program: &Program, rerolled: &Rerolled) -> FxHashMap<ExprId, Vec<usize>
     slots
 }
 
-struct Line<'a> {
+struct OrderedStatements<'a> {
     program: &'a Program,
     constants: &'a Constants,
     inlined: &'a [bool],
@@ -110,7 +110,7 @@ struct Line<'a> {
     statements: Vec<Statement>,
 }
 
-impl Line<'_> {
+impl OrderedStatements<'_> {
     /// Sines and cosines of all angles, in one pass. No angle depends on the sine of another.
     fn angles(&mut self, outputs: &[ExprId]) {
         let mut angles = angles(self.program, &needed_here(self.program, self.constants, outputs));

@@ -31,7 +31,7 @@ pub(super) fn split(
     if !is_long(&line) {
         return (vec![line], 0);
     }
-    let lives = Lives::of(program, constants, inlined, &line);
+    let lives = Lives::new(program, constants, inlined, &line);
     let mut cuts = vec![0];
     while line.len() - cuts.last().unwrap_or(&0) > LONGEST_PIECE {
         let start = *cuts.last().unwrap_or(&0);
@@ -53,7 +53,7 @@ struct Lives {
 }
 
 impl Lives {
-    fn of(program: &Program, constants: &Constants, inlined: &[bool], line: &[Statement]) -> Self {
+    fn new(program: &Program, constants: &Constants, inlined: &[bool], line: &[Statement]) -> Self {
         let mut defined = BTreeMap::new();
         let mut last_read = BTreeMap::new();
         let mut reads = Vec::with_capacity(line.len());

@@ -53,7 +53,7 @@ fn computed(line: &[Statement]) -> Vec<ExprId> {
 #[test]
 fn a_product_is_fused_into_the_sum_that_alone_uses_it() {
     let program = program(|_, [a, b, c, ..]| vec![a * b + c]);
-    let fused = fuse(&program, &Constants::of(&program), roots(&program));
+    let fused = fuse(&program, &Constants::new(&program), roots(&program));
     let product = only(&program, |op| matches!(op, Op::Mul(..)));
     let sum = only(&program, |op| matches!(op, Op::Add(..)));
     assert_eq!(fused[sum.index()], Some(product));
@@ -61,7 +61,7 @@ fn a_product_is_fused_into_the_sum_that_alone_uses_it() {
 
 #[test]
 fn a_product_that_is_a_result_or_is_divided_is_not_fused() {
-    let of = |program: &Program| fuse(program, &Constants::of(program), roots(program)).iter().flatten().count();
+    let of = |program: &Program| fuse(program, &Constants::new(program), roots(program)).iter().flatten().count();
     assert_eq!(of(&program(|_, [a, b, c, ..]| vec![a * b, a * b + c])), 0);
     assert_eq!(of(&program(|_, [a, b, c, d, _]| vec![a * b + c, d / (a * b)])), 0);
     // It is fused into both sums that use it, so that it is not computed separately.
@@ -74,14 +74,14 @@ fn a_product_of_many_sums_is_computed_once() {
         (1..=5).map(|k| a * b + c * graph.constant(f64::from(k) + 0.5).sin() * c).collect()
     });
     let product = program.ids().find(|id| program.op(*id).operands().map(ExprId::index).eq([0, 1])).expect("a b");
-    let fused = fuse(&program, &Constants::of(&program), roots(&program));
+    let fused = fuse(&program, &Constants::new(&program), roots(&program));
     assert!(!fused.iter().flatten().any(|id| *id == product));
 }
 
 #[test]
 fn what_depends_on_parameters_alone_is_stored() {
     let program = program(|_, [a, .., p]| vec![(p * p + 1.0) * a + p]);
-    let constants = Constants::of(&program);
+    let constants = Constants::new(&program);
     let square = only(&program, |op| matches!(op, Op::Mul(x, y) if x == y));
     let factor = program.ids().find(|id| program.op(*id).operands().any(|operand| operand == square)).expect("p² + 1");
     // The whole factor is stored, not its parts, and not the parameter itself, which is read directly.
@@ -96,7 +96,7 @@ fn a_value_used_once_stands_where_it_is_used_and_one_used_twice_does_not() {
         vec![once + twice, c - twice]
     });
     let roots = roots(&program);
-    let inlined = bundle::bundle(&program, &Constants::of(&program), &vec![None; program.operations.len()], roots);
+    let inlined = bundle::bundle(&program, &Constants::new(&program), &vec![None; program.operations.len()], roots);
     let [once, twice] = [0, 1].map(|k| {
         let divisions = program.ids().filter(|id| matches!(program.op(*id), Op::Div(..)));
         divisions.collect::<Vec<_>>()[k]
@@ -120,7 +120,7 @@ fn angles_come_first_and_operands_before_their_users() {
         let y = x * x + (a + b).sin();
         vec![y * y * x, c.cos() * y]
     });
-    let constants = Constants::of(&program);
+    let constants = Constants::new(&program);
     let lowered = lower(&program, None);
     let [line] = lowered.functions[0].pieces.as_slice() else { panic!("one piece") };
     let sines = line.iter().position(|statement| matches!(statement, Statement::SinCos(_))).expect("sines");
@@ -153,7 +153,7 @@ fn pieces_of_a_long_line_carry_values_across_cuts() {
         vec![x, y]
     });
     // Sines depend on each other, unlike in any crane, so the code is constructed here.
-    let constants = Constants::of(&program);
+    let constants = Constants::new(&program);
     let inlined = vec![false; program.operations.len()];
     let line: Vec<Statement> = program
         .ids()

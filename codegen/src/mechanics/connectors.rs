@@ -1,7 +1,7 @@
 //! Connectors: elements that pull or push two points along the line between them, ropes over sheaves, and couplings of two coordinates.
 
 use super::elements::{Element, Elements, Posed};
-use super::laws::At;
+use super::laws::LawState;
 use super::model::Model;
 use super::place::{Place, Pull};
 use super::profile;
@@ -20,7 +20,7 @@ fn pulled<'a, 'g>(posed: Posed<'a, 'g>) -> impl Iterator<Item = Pulled<'a, 'g>> 
     let (model, ..) = posed;
     Elements::new(posed, Group::Connectors).all().map(move |element| {
         let rate = element.strained.rate(model, &model.v);
-        let force = element.force(At::now(model), rate);
+        let force = element.force(LawState::now(model), rate);
         Pulled { element, rate, force }
     })
 }
@@ -49,7 +49,7 @@ pub fn jacobians<'g>(posed: Posed<'_, 'g>) -> Vec<Expr<'g>> {
 pub fn tensions<'g>(posed: Posed<'_, 'g>) -> Vec<Expr<'g>> {
     let (model, ..) = posed;
     let tension = |Pulled { element, rate, force }: Pulled<'_, 'g>| {
-        let [by_length, by_rate] = element.slopes(At::now(model), rate);
+        let [by_length, by_rate] = element.slopes(LawState::now(model), rate);
         [force, by_length, by_rate]
     };
     pulled(posed).flat_map(tension).collect()
@@ -61,7 +61,7 @@ pub fn winch_power<'g>(posed: Posed<'_, 'g>) -> Expr<'g> {
     pulled(posed).fold(model.zero(), |sum, Pulled { element, force, .. }| {
         match (&element.force.law, element.force.winch()) {
             (Law::Rope(rope), Some(length)) => {
-                let overcome = rope.winch_force(At::now(model), element.strained.length, force);
+                let overcome = rope.winch_force(LawState::now(model), element.strained.length, force);
                 sum - overcome * profile::rate(model, length, model.t)
             }
             _ => sum,

@@ -45,7 +45,7 @@ struct Point<'g> {
 }
 
 /// A cylinder in a pose.
-struct Line<'g> {
+struct CylinderLine<'g> {
     /// ℓ
     length: Expr<'g>,
     /// H, A and, if there is a linkage, P
@@ -111,7 +111,7 @@ fn pin_position<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, pin: &Pin) -
     pose.origin + pose.rotation.apply(model.vector(&pin.position))
 }
 
-impl<'g> Line<'g> {
+impl<'g> CylinderLine<'g> {
     fn new(model: &Model<'g>, kinematics: &Kinematics<'g>, cylinder: &Cylinder) -> Self {
         let [foot, head] = [&cylinder.foot, &cylinder.head].map(|pin| pin_position(model, kinematics, pin));
         let axis = kinematics.generators[cylinder.coordinate.0].omega;
@@ -133,10 +133,10 @@ impl<'g> Line<'g> {
             let [by_head, by_axis] = linkage.gradients(direction);
             let of_head = point(&cylinder.head, head, by_head);
             let of_pivot = point(pin, pivot, direction - by_head);
-            Line { length, points: vec![of_head, of_foot, of_pivot], axis: Some([axis, by_axis]) }
+            CylinderLine { length, points: vec![of_head, of_foot, of_pivot], axis: Some([axis, by_axis]) }
         } else {
             let of_head = point(&cylinder.head, head, direction);
-            Line { length, points: vec![of_head, of_foot], axis: None }
+            CylinderLine { length, points: vec![of_head, of_foot], axis: None }
         }
     }
 
@@ -172,7 +172,7 @@ fn lines<'g, 'a>(model: &'a Model<'g>) -> impl Iterator<Item = (&'a Cylinder, Ex
     let model = model.at(q);
     let kinematics = Kinematics::new(&model);
     cylinders.iter().map(move |cylinder| {
-        let line = Line::new(&model, &kinematics, cylinder);
+        let line = CylinderLine::new(&model, &kinematics, cylinder);
         (cylinder, line.length, line.jacobian(&model, &kinematics, cylinder))
     })
 }
@@ -213,7 +213,7 @@ pub fn pushes<'g>(
     kinematics: &Kinematics<'g>,
     cylinder: &Cylinder,
 ) -> Vec<(Place<'g>, [Vec3<'g>; 2])> {
-    let line = Line::new(model, kinematics, cylinder);
+    let line = CylinderLine::new(model, kinematics, cylinder);
     let at = |point: &Point<'g>| (point.place.clone(), [point.gradient, point.position.cross(point.gradient)]);
     // The joint leaves its axis in place, seen from both of its sides: that on which the head is not. On the body before it, it is at the end.
     let beyond = model.chain.coordinates[cylinder.coordinate.0].body;

@@ -8,7 +8,7 @@ use std::cell::OnceCell;
 
 use super::acts::{Acts, Rest};
 use super::kinematics::Kinematics;
-use super::laws::{At, Law, law};
+use super::laws::{Law, LawState, law};
 use super::model::Model;
 use super::pads::Series;
 use super::strains::Strained;
@@ -29,8 +29,9 @@ impl<'g> Strains<'g> {
     }
 
     /// Those of a group.
-    fn of(&self, chain: &Chain, group: Group) -> &[OnceCell<Pose<'g>>] {
-        let (before, count) = (chain.forces.partition_point(|force| force.group < group), chain.of(group).len());
+    fn poses_of_group(&self, chain: &Chain, group: Group) -> &[OnceCell<Pose<'g>>] {
+        let (before, count) =
+            (chain.forces.partition_point(|force| force.group < group), chain.forces_of_group(group).len());
         &self.0[before..before + count]
     }
 }
@@ -66,22 +67,22 @@ pub struct Element<'a, 'g> {
 }
 
 impl<'g> Element<'_, 'g> {
-    fn at<'a>(&self, at: At<'a, 'g>) -> At<'a, 'g> {
-        At { series: self.series.map(|series| [series.compliance, series.viscous]), ..at }
+    fn at<'a>(&self, at: LawState<'a, 'g>) -> LawState<'a, 'g> {
+        LawState { series: self.series.map(|series| [series.compliance, series.viscous]), ..at }
     }
 
     /// F
-    pub fn force(&self, at: At<'_, 'g>, rate: Expr<'g>) -> Expr<'g> {
+    pub fn force(&self, at: LawState<'_, 'g>, rate: Expr<'g>) -> Expr<'g> {
         self.law.force(self.at(at), self.strained.length, rate)
     }
 
     /// `∂F/∂s` and `∂F/∂ṡ`.
-    pub fn slopes(&self, at: At<'_, 'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
+    pub fn slopes(&self, at: LawState<'_, 'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
         self.law.slopes(self.at(at), self.strained.length, rate)
     }
 
     /// `½ F²`, which acts on a coordinate on which what is in series depends, and slopes of the compliance.
-    fn on_series(&self, at: At<'_, 'g>) -> Option<(usize, Expr<'g>, [Expr<'g>; 2])> {
+    fn on_series(&self, at: LawState<'_, 'g>) -> Option<(usize, Expr<'g>, [Expr<'g>; 2])> {
         let (coordinate, slopes) = self.series?.by;
         Some((coordinate, 0.5 * self.force(at, at.zero()).squared(), slopes))
     }
@@ -90,7 +91,12 @@ impl<'g> Element<'_, 'g> {
 impl<'a, 'g> Elements<'a, 'g> {
     pub fn new(posed: Posed<'a, 'g>, group: Group) -> Self {
         let (model, kinematics, strains) = posed;
-        Elements { model, kinematics, forces: model.chain.of(group), strains: strains.of(model.chain, group) }
+        Elements {
+            model,
+            kinematics,
+            forces: model.chain.forces_of_group(group),
+            strains: strains.poses_of_group(model.chain, group),
+        }
     }
 
     /// All of them.
@@ -103,7 +109,7 @@ impl<'a, 'g> Elements<'a, 'g> {
     }
 
     /// Generalized forces.
-    fn sum(&self, at: At<'_, 'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    fn sum(&self, at: LawState<'_, 'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let mut forces = self.model.zeros();
         for element in self.all() {
             let force = element.force(at, element.strained.rate(self.model, v));
@@ -120,22 +126,22 @@ impl<'a, 'g> Elements<'a, 'g> {
 
 impl<'g> Acts<'g> for Elements<'_, 'g> {
     fn in_motion(&self) -> Vec<Expr<'g>> {
-        self.sum(At::now(self.model), &self.model.v)
+        self.sum(LawState::now(self.model), &self.model.v)
     }
 
     fn at_rest(&self, rest: &Rest<'g>) -> Vec<Expr<'g>> {
-        self.sum(At::rest(self.model, rest.t), &self.model.zeros())
+        self.sum(LawState::rest(self.model, rest.t), &self.model.zeros())
     }
 
     fn energy(&self) -> Option<Expr<'g>> {
-        let at = At::now(self.model);
+        let at = LawState::now(self.model);
         let twice = |element: Element<'_, 'g>| element.law.twice_energy(element.at(at), element.strained.length);
         let sum = self.all().map(twice).fold(self.model.zero(), |sum, twice| sum + twice);
         Some(0.5 * sum).filter(|energy| !energy.is_zero())
     }
 
     fn dissipation(&self) -> Option<Expr<'g>> {
-        let at = At::now(self.model);
+        let at = LawState::now(self.model);
         let lost = |element: Element<'_, 'g>| {
             let Element { law, strained, .. } = &element;
             law.dissipation(element.at(at), strained.length, strained.rate(self.model, &self.model.v))
@@ -145,7 +151,7 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
 
     /// `∂F/∂s Jᵀ J + F ∂²s/∂q∂q`: the stiffness of the material and, since J depends on the pose, that of the geometry.
     fn add_stiffness(&self, rest: &Rest<'g>, tangent: &mut Tangent<'_, 'g>) {
-        let (at, model) = (At::rest(self.model, rest.t), self.model);
+        let (at, model) = (LawState::rest(self.model, rest.t), self.model);
         for element in self.all() {
             let [stiffness, _] = element.slopes(at, model.zero());
             let tension = element.force(at, model.zero());
@@ -161,7 +167,7 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
     }
 
     fn add_damping(&self, rest: &Rest<'g>, matrix: &mut SymmetricMatrix<'g>) {
-        let at = At::rest(self.model, rest.t);
+        let at = LawState::rest(self.model, rest.t);
         for element in self.all() {
             let Element { law, strained, .. } = &element;
             strained.add_square(law.damping_at_rest(element.at(at), strained.length), matrix);
@@ -170,7 +176,7 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
 
     /// Those of linear laws on single coordinates.
     fn add_step_matrices(&self, [stiffness, damping]: [&mut SymmetricMatrix<'g>; 2]) {
-        let at = At::now(self.model);
+        let at = LawState::now(self.model);
         let linear = self.all().filter(|Element { force, law, .. }| force.coordinate().is_some() && law.is_linear());
         for element in linear {
             let strained = element.strained;
@@ -182,7 +188,7 @@ impl<'g> Acts<'g> for Elements<'_, 'g> {
 
     /// Those of other laws on single coordinates.
     fn add_nonlinear(&self, diagonal: &mut [[Expr<'g>; 2]]) {
-        let at = At::now(self.model);
+        let at = LawState::now(self.model);
         for element in self.all() {
             let Element { force, law, strained, .. } = &element;
             let Some(coordinate) = force.coordinate().filter(|_| !law.is_linear()) else { continue };

@@ -46,7 +46,7 @@ impl Kind {
             Kind::Supports => !chain.supports.is_empty(),
             Kind::Drives => !chain.drives.is_empty(),
             Kind::Loads => !chain.loads.is_empty(),
-            Kind::Of(group) => !chain.of(group).is_empty(),
+            Kind::Of(group) => !chain.forces_of_group(group).is_empty(),
         }
     }
 }
@@ -77,7 +77,7 @@ impl<'a, 'g> Forces<'a, 'g> {
     }
 
     /// The forces of a kind.
-    pub fn of(&self, kind: Kind) -> Box<dyn Acts<'g> + 'a> {
+    pub fn forces_of_kind(&self, kind: Kind) -> Box<dyn Acts<'g> + 'a> {
         let (model, kinematics, _) = self.posed;
         match kind {
             Kind::Supports => Box::new(Supports { model, kinematics }),
@@ -88,7 +88,7 @@ impl<'a, 'g> Forces<'a, 'g> {
     }
 
     fn each(&self) -> impl Iterator<Item = Box<dyn Acts<'g> + 'a>> {
-        self.kinds().map(|kind| self.of(kind))
+        self.kinds().map(|kind| self.forces_of_kind(kind))
     }
 
     /// Generalized forces of all kinds in motion.

@@ -30,7 +30,7 @@ pub struct ForwardInputs<'a, 'g> {
 }
 
 /// The motion of a chain with these inputs.
-pub struct Motion<'g> {
+pub struct ForwardMotion<'g> {
     /// q̈ of all coordinates.
     pub accelerations: Vec<Expr<'g>>,
     /// Efforts that the prescribed accelerations require; zero elsewhere.
@@ -48,7 +48,11 @@ pub(super) enum Joint<'g> {
 }
 
 /// q̈ of all coordinates, and the efforts of the prescribed ones (hybrid dynamics).
-pub fn hybrid_dynamics<'g>(model: &Model<'g>, factors: &[Factor<'g>], inputs: &ForwardInputs<'_, 'g>) -> Motion<'g> {
+pub fn hybrid_dynamics<'g>(
+    model: &Model<'g>,
+    factors: &[Factor<'g>],
+    inputs: &ForwardInputs<'_, 'g>,
+) -> ForwardMotion<'g> {
     let velocities = velocities(model, factors, inputs.v);
     let (joints, _) = inward(model, factors, &velocities, inputs.efforts, inputs.prescribed);
     outward(model, factors, &velocities, &joints, (Vec3::zero(model.graph), -inputs.gravity))
@@ -144,7 +148,7 @@ pub(super) fn outward<'g>(
     velocities: &[Velocities<'g>],
     joints: &[Joint<'g>],
     start: (Vec3<'g>, Vec3<'g>),
-) -> Motion<'g> {
+) -> ForwardMotion<'g> {
     let (mut angular, mut linear) = start;
     let (mut accelerations, mut efforts) = (model.zeros(), model.zeros());
     let mut reached = Reached::new();
@@ -198,7 +202,7 @@ pub(super) fn outward<'g>(
     for (effort, coordinate) in efforts.iter().zip(&model.chain.coordinates) {
         model.graph.name(*effort, format!("effort_{}", coordinate.name));
     }
-    Motion { accelerations, efforts }
+    ForwardMotion { accelerations, efforts }
 }
 
 impl<'g> Joint<'g> {

@@ -5,7 +5,7 @@ use crate::chain::Group;
 use crate::program::FunctionId;
 
 /// What belongs to a kind of force.
-pub struct Row {
+pub struct KindRow {
     /// Its generalized forces.
     pub forces: FunctionId,
     /// The energy that it stores, if it can.
@@ -16,7 +16,7 @@ pub struct Row {
 
 impl Kind {
     /// Its row of the table.
-    pub fn row(self) -> &'static Row {
+    pub fn row(self) -> &'static KindRow {
         match self {
             Kind::Supports => &SUPPORTS,
             Kind::Of(Group::Elements) => &ELEMENTS,
@@ -30,43 +30,46 @@ impl Kind {
     }
 }
 
-const SUPPORTS: Row = Row {
+const SUPPORTS: KindRow = KindRow {
     forces: FunctionId::SupportForces,
     energy: Some(FunctionId::SupportEnergy),
     absent: ("supports", "the spec has none"),
 };
 
-const ELEMENTS: Row = Row {
+const ELEMENTS: KindRow = KindRow {
     forces: FunctionId::ElementForces,
     energy: Some(FunctionId::ElementEnergy),
     absent: ("springs and dampers of rigid elements", "no link is flexible"),
 };
 
-const DRIVES: Row = Row {
+const DRIVES: KindRow = KindRow {
     forces: FunctionId::DriveForces,
     energy: Some(FunctionId::DriveEnergy),
     absent: ("drives", "the spec has none"),
 };
 
-const JOINT_DAMPERS: Row = Row {
+const JOINT_DAMPERS: KindRow = KindRow {
     forces: FunctionId::JointDamperForces,
     energy: None,
     absent: ("viscous damping of joints", "the spec has none"),
 };
 
-const STOPS: Row = Row {
+const STOPS: KindRow = KindRow {
     forces: FunctionId::StopForces,
     energy: Some(FunctionId::StopEnergy),
     absent: ("end stops", "the spec has none"),
 };
 
-const FRICTION: Row =
-    Row { forces: FunctionId::FrictionForces, energy: None, absent: ("friction of joints", "the spec has none") };
+const FRICTION: KindRow =
+    KindRow { forces: FunctionId::FrictionForces, energy: None, absent: ("friction of joints", "the spec has none") };
 
-const LOADS: Row =
-    Row { forces: FunctionId::LoadForces, energy: None, absent: ("loads applied from outside", "the spec has none") };
+const LOADS: KindRow = KindRow {
+    forces: FunctionId::LoadForces,
+    energy: None,
+    absent: ("loads applied from outside", "the spec has none"),
+};
 
-const CONNECTORS: Row = Row {
+const CONNECTORS: KindRow = KindRow {
     forces: FunctionId::ConnectorForces,
     energy: Some(FunctionId::ConnectorEnergy),
     absent: ("springs and ropes between points, couplings with springs", "the spec has none"),

@@ -126,11 +126,11 @@ pub struct Kinematics<'g> {
 
 impl<'g> Kinematics<'g> {
     pub fn new(model: &Model<'g>) -> Self {
-        Self::of(model, |_| true)
+        Self::with_bodies(model, |_| true)
     }
 
     /// Those of the bodies for which `counts` holds, of which each one's parent is another; others rest at the origin.
-    pub fn of(model: &Model<'g>, counts: impl Fn(usize) -> bool) -> Self {
+    pub fn with_bodies(model: &Model<'g>, counts: impl Fn(usize) -> bool) -> Self {
         let world = Pose { rotation: Rotation::identity(model.graph), origin: Vec3::zero(model.graph) };
         let (mut poses, mut generators, mut curvatures): (Vec<Pose<'g>>, _, _) = (Vec::new(), Vec::new(), Vec::new());
         for (index, body) in model.chain.bodies.iter().enumerate() {

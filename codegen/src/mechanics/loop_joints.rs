@@ -88,16 +88,16 @@ fn placed<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, end: &Attachment) 
 }
 
 /// A vector with its rate, and its second rate for q̈ = 0, in the axes of the first body; and the entries of its derivative by coordinates.
-struct Moving<'g> {
+struct MovingEnd<'g> {
     motion: [Vec3<'g>; 3],
     slopes: Vec<(usize, Vec3<'g>)>,
 }
 
 /// A joint at a state.
 struct Closed<'g> {
-    gap: Moving<'g>,
+    gap: MovingEnd<'g>,
     /// s, of a pin or a pad.
-    axis: Option<Moving<'g>>,
+    axis: Option<MovingEnd<'g>>,
     /// L of a rod, otherwise 0.
     length: Expr<'g>,
 }
@@ -113,7 +113,7 @@ impl<'g> Closed<'g> {
         let ends = joint.ends.iter().filter_map(|end| end.body);
         let ends = ends.chain(joint.kind.slides().map(|sliding| sliding.beam.last()));
         let counted: BTreeSet<BodyId> = ends.flat_map(|end| model.chain.path(end)).collect();
-        let kinematics = Kinematics::of(&model, |body| counted.contains(&BodyId(body)));
+        let kinematics = Kinematics::with_bodies(&model, |body| counted.contains(&BodyId(body)));
         let bodies = Bodies { model: &model, kinematics: &kinematics, joint };
         let [(frame, one), (of_second, other)] = joint.ends.each_ref().map(|end| placed(&model, &kinematics, end));
         if let Some(sliding) = joint.kind.slides() {
@@ -254,7 +254,7 @@ impl<'g> Bodies<'_, 'g> {
         value: Vec3<'g>,
         [of_first, of_second]: [Moves<'_, 'g>; 2],
         by_place: Option<&ByPlace<'_, 'g>>,
-    ) -> Moving<'g> {
+    ) -> MovingEnd<'g> {
         let Model { v, graph, .. } = self.model;
         let zero = Vec3::zero(graph);
         let mut by_coordinate = vec![zero; v.len()];
@@ -277,7 +277,7 @@ impl<'g> Bodies<'_, 'g> {
             let turning = self.moving(1).fold(zero, |sum, (j, generator)| sum + v[j] * moves(generator));
             second = second + along * (turning + turning + along * *bend);
         }
-        Moving {
+        MovingEnd {
             motion: [value, rate, second].map(|vector| frame.apply_transposed(vector)),
             slopes: between.into_iter().map(|CoordinateId(j)| (j, frame.apply_transposed(by_coordinate[j]))).collect(),
         }

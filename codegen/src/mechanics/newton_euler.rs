@@ -49,7 +49,7 @@ pub fn point_accelerations<'g>(
     let motions = outward(model, factors, (&model.v, Some(&model.a)), Vec3::zero(model.graph));
     let acceleration = |point: &Point| {
         let BodyId(body) = point.body;
-        let Some(Motion { velocities: Velocities::Body { omega }, alpha, a }) = motion_of(factors, &motions, body)
+        let Some(BodyMotion { velocities: Velocities::Body { omega }, alpha, a }) = motion_of(factors, &motions, body)
         else {
             return [model.zero(); 3];
         };
@@ -61,7 +61,7 @@ pub fn point_accelerations<'g>(
 }
 
 /// The motion of a body's frame.
-fn motion_of<'a, 'g>(factors: &[Factor<'g>], motions: &'a [Motion<'g>], body: usize) -> Option<&'a Motion<'g>> {
+fn motion_of<'a, 'g>(factors: &[Factor<'g>], motions: &'a [BodyMotion<'g>], body: usize) -> Option<&'a BodyMotion<'g>> {
     let reached = |factor: &Factor<'g>| matches!(factor, Factor::Body(index) if *index == body);
     factors.iter().zip(motions).find(|(factor, _)| reached(factor)).map(|(_, motion)| motion)
 }
@@ -89,7 +89,7 @@ fn at_cuts<'g>(
     model: &Model<'g>,
     kinematics: &Kinematics<'g>,
     factors: &[Factor<'g>],
-    (motions, applied): (&[Motion<'g>], &[Vec<Action<'g>>]),
+    (motions, applied): (&[BodyMotion<'g>], &[Vec<Action<'g>>]),
 ) -> Vec<Expr<'g>> {
     let swept = inward(model, factors, motions, applied, |force, moment| Some([-force, -moment]));
     let wrenches = model.chain.cuts().into_iter().filter_map(|cut| match cut {
@@ -116,7 +116,7 @@ fn at_cuts<'g>(
 fn within<'g>(
     model: &Model<'g>,
     section: &Section,
-    (beyond, motion): (Option<Wrench<'g>>, &Motion<'g>),
+    (beyond, motion): (Option<Wrench<'g>>, &BodyMotion<'g>),
     [branches, applied]: [&[Action<'g>]; 2],
 ) -> Option<Wrench<'g>> {
     let ([mut force, mut moment], inside) = (beyond?, section.inside.as_ref()?);
@@ -174,7 +174,7 @@ fn at_pad<'a, 'g: 'a>(
     kinematics: &Kinematics<'g>,
     (side, sliding): (Side, &Sliding),
     swept: &Inward<'g>,
-    on_element: &impl Fn(usize) -> Option<(&'a Motion<'g>, &'a [Action<'g>])>,
+    on_element: &impl Fn(usize) -> Option<(&'a BodyMotion<'g>, &'a [Action<'g>])>,
 ) -> Option<Wrench<'g>> {
     let (axis, zero) = (&sliding.beam, model.zero());
     let whole = model.number(&axis.length);
@@ -292,7 +292,7 @@ fn with_branches<'g>(own: Wrench<'g>, branches: &[Action<'g>]) -> Wrench<'g> {
 }
 
 /// The motion of the frame after one factor.
-struct Motion<'g> {
+struct BodyMotion<'g> {
     velocities: Velocities<'g>,
     /// Angular acceleration of the frame after the factor, in its components.
     alpha: Vec3<'g>,
@@ -307,7 +307,7 @@ fn outward<'g>(
     factors: &[Factor<'g>],
     (v, accelerations): (&[Expr<'g>], Option<&[Expr<'g>]>),
     start: Vec3<'g>,
-) -> Vec<Motion<'g>> {
+) -> Vec<BodyMotion<'g>> {
     let zero = Vec3::zero(model.graph);
     let (mut omega, mut alpha, mut a) = (zero, zero, start);
     let mut reached = Reached::new();
@@ -349,7 +349,7 @@ fn outward<'g>(
         let mut state = [omega, alpha, a];
         reached.follow(factor, &mut state);
         [omega, alpha, a] = state;
-        motions.push(Motion { velocities, alpha, a });
+        motions.push(BodyMotion { velocities, alpha, a });
     }
     motions
 }
@@ -378,7 +378,7 @@ struct Inward<'g> {
 fn inward<'g>(
     model: &Model<'g>,
     factors: &[Factor<'g>],
-    motions: &[Motion<'g>],
+    motions: &[BodyMotion<'g>],
     applied: &[Vec<Action<'g>>],
     note: impl Fn(Vec3<'g>, Vec3<'g>) -> Option<Wrench<'g>>,
 ) -> Inward<'g> {
@@ -392,7 +392,7 @@ fn inward<'g>(
     // The body whose path the sweep follows.
     let mut on = 0;
     let sweep = model.graph.sweep();
-    for (factor, Motion { velocities, alpha, a }) in factors.iter().zip(motions).rev() {
+    for (factor, BodyMotion { velocities, alpha, a }) in factors.iter().zip(motions).rev() {
         if factor.moves() && joints[on].is_none() {
             joints[on] = note(force, moment);
         }

@@ -53,7 +53,8 @@ impl<'g> Series<'g> {
         let springs: Vec<_> = match sliding.direction {
             PadDirection::Along(_) => return None,
             PadDirection::Twist => {
-                twist_springs(model.chain.of(Group::Elements), &model.chain.coordinates, &sliding.beam).collect()
+                twist_springs(model.chain.forces_of_group(Group::Elements), &model.chain.coordinates, &sliding.beam)
+                    .collect()
             }
         };
         if springs.is_empty() {

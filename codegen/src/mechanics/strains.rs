@@ -20,7 +20,7 @@ use super::place::{Along, Place, Pull};
 use super::tangent::Tangent;
 use super::turning::Turned;
 use super::vector::{Rotation, SymmetricMatrix, Vec3};
-use crate::chain::{Attachment, Axis, BodyId, CoordinateId, Line, LinePart, Strain, Value};
+use crate::chain::{Attachment, Axis, BodyId, CoordinateId, LinePart, Strain, StrainLine, Value};
 use crate::symbolic::Expr;
 
 /// A strain at the present pose.
@@ -91,7 +91,7 @@ impl<'g> Strained<'g> {
         }
     }
 
-    fn of_line(model: &Model<'g>, kinematics: &Kinematics<'g>, line: &Line) -> Self {
+    fn of_line(model: &Model<'g>, kinematics: &Kinematics<'g>, line: &StrainLine) -> Self {
         let points: Vec<Vec3<'g>> = line.points.iter().map(|end| point(model, kinematics, end)).collect();
         let (mut length, mut pulls) = (model.zero(), Vec::new());
         let mut jacobian = BTreeMap::new();
@@ -137,7 +137,7 @@ impl<'g> Strained<'g> {
     ) {
         if let Strain::Line(line) = strain {
             for ((part, ends), pull) in line.parts().zip(self.points.windows(2)).zip(&self.pulls) {
-                let part = Part::new((model, kinematics), part, [ends[0], ends[1]]);
+                let part = StrainPart::new((model, kinematics), part, [ends[0], ends[1]]);
                 for &(j, column) in &self.jacobian {
                     part.add(j, slope * column * *pull, tangent);
                 }
@@ -193,7 +193,7 @@ impl<'g> Strained<'g> {
 }
 
 /// A straight part of a line at the present pose.
-struct Part<'g> {
+struct StrainPart<'g> {
     falls: u32,
     ends: [Vec3<'g>; 2],
     /// The bodies of the ends, and the last one that carries both.
@@ -203,7 +203,7 @@ struct Part<'g> {
     changing: Vec<(usize, bool, Vec3<'g>)>,
 }
 
-impl<'g> Part<'g> {
+impl<'g> StrainPart<'g> {
     fn new((model, kinematics): (&Model<'g>, &Kinematics<'g>), part: LinePart<'_>, ends: [Vec3<'g>; 2]) -> Self {
         let bodies = part.ends.map(|end| end.body);
         let of_second: BTreeSet<CoordinateId> = model.chain.reach(part.ends[1]).into_iter().collect();
@@ -211,7 +211,7 @@ impl<'g> Part<'g> {
             let (generator, on_second) = (&kinematics.generators[id.0], of_second.contains(&id));
             (id.0, on_second, if on_second { generator.velocity(ends[1]) } else { -generator.velocity(ends[0]) })
         };
-        Part {
+        StrainPart {
             falls: part.falls,
             ends,
             bodies,

@@ -53,7 +53,7 @@ pub(crate) struct Key {
 
 impl Key {
     /// The key of a value of a type.
-    pub const fn of<T: FromNode>(name: &'static str, about: &'static str, measure: &'static Measure) -> Self {
+    pub const fn new<T: FromNode>(name: &'static str, about: &'static str, measure: &'static Measure) -> Self {
         Key { name, about, is_required: !T::IS_OPTIONAL, form: T::FORM, measure }
     }
 }

@@ -2,7 +2,7 @@
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use crate::diagnostic::{Mistake, Part, SourceFile, Span, rule};
+use crate::diagnostic::{Mistake, SourceFile, SourcePart, Span, rule};
 use crate::node::{Content, Node};
 use crate::units::{Quantity, Unit, UnknownUnit, name_and_unit};
 
@@ -93,10 +93,14 @@ impl Node {
 }
 
 /// Times and values of a file: its first column, and the one that is asked for, or the second.
-fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span)>) -> Result<[Vec<Node>; 2], Mistake> {
+fn columns(
+    data: &SourcePart<'_>,
+    (file, at): (&str, Span),
+    column: Option<(&str, Span)>,
+) -> Result<[Vec<Node>; 2], Mistake> {
     // Spreadsheets mark UTF-8 by a first character that is not part of the table.
     let text = data.text.strip_prefix('\u{feff}').unwrap_or(data.text);
-    let data = &Part { text, start: data.start + data.text.len() - text.len(), ..*data };
+    let data = &SourcePart { text, start: data.start + data.text.len() - text.len(), ..*data };
     if let Some(with) = other_separators(text) {
         return Err(rule::data_separators(at, file, with));
     }
@@ -154,7 +158,7 @@ fn columns(data: &Part<'_>, (file, at): (&str, Span), column: Option<(&str, Span
 }
 
 /// A cell as a number, in SI units.
-fn number(data: &Part<'_>, row: &StringRecord, column: usize, unit: Option<&str>) -> Result<Node, Mistake> {
+fn number(data: &SourcePart<'_>, row: &StringRecord, column: usize, unit: Option<&str>) -> Result<Node, Mistake> {
     let cell = row.get(column).unwrap_or_default();
     let begin = row.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
     let line = data.text.get(begin..).and_then(|rest| rest.lines().next()).unwrap_or_default();

@@ -20,7 +20,7 @@ pub(super) fn simplify(graph: &Graph, op: Op) -> ExprId {
         Sin(a) => sine(graph, a),
         Cos(a) => cosine(graph, a),
         Stumpff(k, a) => match number(graph, a) {
-            Some(x) => constant(graph, stumpff::of(k, x)),
+            Some(x) => constant(graph, stumpff::evaluate(k, x)),
             None => graph.intern(op),
         },
         Min(a, b) => extremum(graph, op, a, b, f64::min),

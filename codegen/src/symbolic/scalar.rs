@@ -42,7 +42,7 @@ impl Scalar for f64 {
         f64::sin_cos(*self)
     }
     fn stumpff(&self, k: u8) -> Self {
-        stumpff::of(k, *self)
+        stumpff::evaluate(k, *self)
     }
     fn min(self, other: Self) -> Self {
         f64::min(self, other)

@@ -14,7 +14,7 @@ const HIGHEST: u8 = 12;
 const TERMS: u32 = 48;
 
 /// `c_k(x)` for x ≥ 0, with the same digits on every platform.
-pub(super) fn of(k: u8, x: f64) -> f64 {
+pub(super) fn evaluate(k: u8, x: f64) -> f64 {
     if x > SERIES { by_angles(k, x) } else { downward(k, x) }
 }
 

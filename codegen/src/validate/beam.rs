@@ -7,7 +7,7 @@ use super::section::Elastic;
 use super::{Carried, Check, Owner};
 use crate::chain::{self, Axis, Chain, CoordinateKind, Division, Force, Group, Law, Outline, Spring, Step, Value};
 use crate::diagnostic::{Span, rule};
-use crate::expand::beam::{self, Distribution, DividedBeam, Joint, Part, RigidElement};
+use crate::expand::beam::{self, Distribution, DividedBeam, Joint, RigidElement, TaperedPart};
 use crate::spec::{Beam, BeamDamping, BeamPart, Bend, Directions, Either, Number, SectionJoint, Sections, Spanned};
 
 /// Maximum number of sections of a beam.
@@ -189,7 +189,8 @@ impl<'a> Check<'a> {
         // What is given for a beam of equal sections, in a section of length d.
         let equal = length.clone() / (sections.max(1) as f64).into();
         let joint = |(stiffness, (_, d)): ([Value; 3], (Value, &Value))| Joint {
-            damping: damping.of(&stiffness, || if *d == equal { Value::ONE } else { equal.clone() / d.clone() }),
+            damping: damping
+                .coefficients(&stiffness, || if *d == equal { Value::ONE } else { equal.clone() / d.clone() }),
             stiffness,
             half_bend: bend.half_of(length, d, sections),
         };
@@ -210,12 +211,12 @@ impl<'a> Check<'a> {
         given: &'a Spanned<Vec<Spanned<BeamPart>>>,
         written: &Spanned<Number>,
         length: &Value,
-    ) -> Option<Vec<Part>> {
+    ) -> Option<Vec<TaperedPart>> {
         let whole = length.as_constant();
         if whole.is_none() {
             self.report(rule::live_part(written.span, "the length of a beam with `parts`"));
         }
-        let parts: Vec<Option<Part>> =
+        let parts: Vec<Option<TaperedPart>> =
             given.value.as_ref()?.iter().map(|part| self.part(part.value.as_ref()?)).collect();
         let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
         let sum: f64 = parts.iter().map(|part| part.length).sum();
@@ -228,7 +229,7 @@ impl<'a> Check<'a> {
     }
 
     /// A part of a beam.
-    fn part(&mut self, part: &'a BeamPart) -> Option<Part> {
+    fn part(&mut self, part: &'a BeamPart) -> Option<TaperedPart> {
         let length = self.number(&part.length, "`length`");
         if length.as_constant().is_none() {
             self.report(rule::live_part(part.length.span, "the length of a part"));
@@ -247,7 +248,7 @@ impl<'a> Check<'a> {
                 Some(to)
             }
         };
-        Some(Part { length: length.as_constant()?, from, to })
+        Some(TaperedPart { length: length.as_constant()?, from, to })
     }
 
     /// How a beam is curved; straight by default.
@@ -342,7 +343,7 @@ enum Damping {
 
 impl Damping {
     /// Coefficients for springs of the given stiffness, `d = β s`; those given directly times how much shorter their section is than equal ones.
-    fn of(&self, stiffness: &[Value; 3], shorter: impl Fn() -> Value) -> [Value; 3] {
+    fn coefficients(&self, stiffness: &[Value; 3], shorter: impl Fn() -> Value) -> [Value; 3] {
         match self {
             Damping::Coefficients(coefficients) => coefficients.clone().map(|given| given * shorter()),
             Damping::Beta(beta) => std::array::from_fn(|k| beta[k].clone() * stiffness[k].clone()),

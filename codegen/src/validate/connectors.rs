@@ -3,8 +3,8 @@
 use super::Check;
 use super::numbers::Whose;
 use crate::chain::{
-    self, Attachment, Chain, CoordinateKind, Cylinder, Follower, Force, Group, Law, Line, LinePart, Profile,
-    RigidCoupling, Rope, RopeStiffness, Spring, Strain, Value,
+    self, Attachment, Chain, CoordinateKind, Cylinder, Follower, Force, Group, Law, LinePart, Profile, RigidCoupling,
+    Rope, RopeStiffness, Spring, Strain, StrainLine, Value,
 };
 use crate::diagnostic::{Span, rule};
 use crate::spec::{self, Crane, Number, Spanned, entries};
@@ -63,7 +63,7 @@ impl<'a> Check<'a> {
     }
 
     /// The line from one end of a connector over its sheaves to the other.
-    fn line(&mut self, connector: &'a spec::Connector, name: &str) -> Option<Line> {
+    fn line(&mut self, connector: &'a spec::Connector, name: &str) -> Option<StrainLine> {
         self.only_ropes_run(connector, name);
         let [from, to] =
             [&connector.from, &connector.to].map(|end| self.attachment(end, &format!("an end of connector `{name}`")));
@@ -74,7 +74,7 @@ impl<'a> Check<'a> {
             self.count(given, &format!("the falls of rope `{name}`"), |count| rule::falls(given.span, name, count))
         });
         let points: Option<Vec<Attachment>> = [from].into_iter().chain(over).chain([to]).collect();
-        Some(Line { points: points?, falls: falls? })
+        Some(StrainLine { points: points?, falls: falls? })
     }
 
     /// Reports sheaves and falls of other connectors than ropes, and lists without sheaves.

@@ -3,7 +3,7 @@
 use super::inertias::Lump;
 use super::on::Attached;
 use super::{Carried, Check};
-use crate::chain::{self, BodyId, Part, Value};
+use crate::chain::{self, BodyId, LinkPart, Value};
 use crate::diagnostic::{Span, rule};
 use crate::expand::inertia::{self, Tensor};
 use crate::node::Limit;
@@ -66,8 +66,8 @@ impl<'a> Check<'a> {
     }
 
     /// Several bodies combined into one.
-    fn lumped(&mut self, bodies: &[Spanned<Body>]) -> (Option<chain::Inertia>, Vec<Part>) {
-        let mut parts: Vec<Part> = Vec::new();
+    fn lumped(&mut self, bodies: &[Spanned<Body>]) -> (Option<chain::Inertia>, Vec<LinkPart>) {
+        let mut parts: Vec<LinkPart> = Vec::new();
         let mut whole = None;
         for (body, span) in bodies.iter().filter_map(|body| Some((body.value.as_ref()?, body.span))) {
             let name = self.name(&body.name).unwrap_or_default().to_owned();
@@ -77,7 +77,7 @@ impl<'a> Check<'a> {
             let inertia = self.inertia(&body.mass, Some(&body.com), body.inertia.as_ref(), &format!("body `{name}`"));
             if let Some(lump) = inertia {
                 let (inertia, com) = self.judged_in_sum(lump);
-                parts.push(Part { name, mass: inertia.mass.clone(), com });
+                parts.push(LinkPart { name, mass: inertia.mass.clone(), com });
                 whole = Some(match whole {
                     Some(others) => inertia::sum(others, inertia),
                     None => inertia,

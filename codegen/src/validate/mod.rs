@@ -59,18 +59,18 @@ pub struct Checked {
     pub warnings: Diagnostics,
     /// The units of its numbers, by their locations.
     pub units: Vec<(Span, String)>,
-    found: Found,
+    found: Inventory,
 }
 
 /// What checking notes besides the chain.
 #[derive(Clone, Debug)]
-struct Found {
+struct Inventory {
     warnings: Vec<Mistake>,
     units: Vec<(Span, String)>,
     judged: Vec<plausibility::Judged>,
 }
 
-impl Found {
+impl Inventory {
     /// Warnings about a crane with values of parameters other than those of the spec, by name.
     fn warnings(&self, spec: &CraneSpec, chain: &Chain, set: &[(&str, f64)]) -> Diagnostics {
         let value = |parameter: &Parameter| {
@@ -127,7 +127,7 @@ pub fn check(spec: CraneSpec) -> Result<Checked, Diagnostics> {
     Ok(Checked { spec, chain, warnings, units, found })
 }
 
-fn expand(spec: &CraneSpec) -> Result<(Chain, Found), Diagnostics> {
+fn expand(spec: &CraneSpec) -> Result<(Chain, Inventory), Diagnostics> {
     let (mut check, mut chain) = Check::begin(spec);
     if check.mistakes.is_empty() {
         // The mass matrix exists only if there are no other mistakes.
@@ -289,11 +289,11 @@ impl<'a> Check<'a> {
         (check, chain)
     }
 
-    fn end(self, spec: &CraneSpec) -> Result<Found, Diagnostics> {
+    fn end(self, spec: &CraneSpec) -> Result<Inventory, Diagnostics> {
         if !self.mistakes.is_empty() {
             return Err(Diagnostics::new(&spec.source, misspelt(self.mistakes, &spec.noticed.lookalikes)));
         }
-        Ok(Found { warnings: self.warnings, units: self.units, judged: self.judged })
+        Ok(Inventory { warnings: self.warnings, units: self.units, judged: self.judged })
     }
 
     fn report(&mut self, mistake: Mistake) {

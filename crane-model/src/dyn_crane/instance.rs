@@ -85,7 +85,7 @@ impl<const N: usize, C: CraneModel<N>> DynCrane for Instance<N, C> {
     }
 
     fn system(&self) -> Box<dyn DynSystem + '_> {
-        Box::new(System { crane: &self.0, factors: None })
+        Box::new(InstanceSystem { crane: &self.0, factors: None })
     }
 
     fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
@@ -112,12 +112,12 @@ impl<const N: usize, C: CraneModel<N>> DynCrane for Instance<N, C> {
 }
 
 /// A linear system and its factors.
-struct System<'a, const N: usize, C: CraneModel<N>> {
+struct InstanceSystem<'a, const N: usize, C: CraneModel<N>> {
     crane: &'a C,
     factors: Option<C::Factors>,
 }
 
-impl<const N: usize, C: CraneModel<N>> DynSystem for System<'_, N, C> {
+impl<const N: usize, C: CraneModel<N>> DynSystem for InstanceSystem<'_, N, C> {
     fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
         let base = Matrix6::from_column_slice(base);
         self.factors = Some(self.crane.factorise(&vector(q), &vector(added_inertia), &base));

@@ -22,7 +22,7 @@ use crate::{
 pub(super) struct ConnectorUpdate {
     /// Number of cranes.
     cranes: usize,
-    rows: Vec<Row>,
+    rows: Vec<ConnectorRow>,
     /// The lower triangle of `U W` of all cranes.
     products: Vec<f64>,
     /// S of each crane.
@@ -39,7 +39,7 @@ pub(super) struct ConnectorUpdate {
 }
 
 /// A connector of each crane; J of a crane is 0 while it does not resist there.
-struct Row {
+struct ConnectorRow {
     /// The coordinates that change its length: the first, and the one after the last.
     spanned: [usize; 2],
     /// J of the spanned coordinates.
@@ -59,7 +59,7 @@ impl ConnectorUpdate {
         let connectors = &crane.description().connectors;
         let count = connectors.len() / cranes;
         let zeros = |len: usize| vec![0.0; len];
-        let row = |spanned @ [first, end]: [usize; 2]| Row {
+        let row = |spanned @ [first, end]: [usize; 2]| ConnectorRow {
             spanned,
             jacobian: zeros(end - first),
             inverse_column: zeros(n),
@@ -192,7 +192,7 @@ impl ConnectorUpdate {
     }
 }
 
-impl Row {
+impl ConnectorRow {
     /// Takes k and d of each crane, and J, which becomes 0 where they do not resist.
     fn take(&mut self, tensions: &[Tension], jacobian: &mut [f64], c: f64) {
         let of_cranes = self.stiffness_and_damping.iter_mut().zip(&mut self.added_inertia);

@@ -249,7 +249,7 @@ impl Course {
         if !at_once {
             let n = present.size();
             let is_awaited = conditions.times.contains(&0.0);
-            let happens = &mut |t: f64, motion: &[f64]| conditions.note(present, &StateAt::of(t, n, motion));
+            let happens = &mut |t: f64, motion: &[f64]| conditions.note(present, &StateAt::from_motion(t, n, motion));
             let asked = is_awaited.then_some(happens as Happens<'_>);
             if planned.is_some() {
                 integration.end_step_at_result();

@@ -59,7 +59,7 @@ pub struct States<const N: usize> {
 
 impl<const N: usize> States<N> {
     /// One state per lane.
-    pub fn of(states: [&State<N>; LANES]) -> Self {
+    pub fn from_lanes(states: [&State<N>; LANES]) -> Self {
         let lanes = |of: fn(&State<N>) -> &SVector<f64, N>| {
             SVector::from_fn(|i, _| f64x8::new(states.map(|state| of(state)[i])))
         };
@@ -171,7 +171,7 @@ pub(crate) fn simulate_fleet(
         (0..count * of_lane(0).len()).map(|place| of_lane(place % count)[place / count]).collect()
     };
     let start = InitialState { q: joined(|start| &start.q), v: joined(|start| &start.v), x: joined(|start| &start.x) };
-    let run = Simulation::of(fleet, start, settings).watch(watch)?;
+    let run = Simulation::new(fleet, start, settings).watch(watch)?;
     let of_lane = |lane: usize| {
         let own = run.efforts.iter().filter(|effort| effort.coordinate % count == lane);
         let efforts = own.map(|effort| EffortAccuracy { coordinate: effort.coordinate / count, ..*effort }).collect();

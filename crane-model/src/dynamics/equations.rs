@@ -93,7 +93,7 @@ impl<'a> Equations<'a> {
     pub fn state<'s>(&'s mut self, t: f64, motion: &'s [f64]) -> StateAt<'s> {
         self.state.copy_from_slice(&motion[..2 * self.n]);
         self.references.add(self.crane, t, 1.0, self.n, &mut self.state);
-        StateAt { x: &motion[2 * self.n..], ..StateAt::of(t, self.n, &self.state) }
+        StateAt { x: &motion[2 * self.n..], ..StateAt::from_motion(t, self.n, &self.state) }
     }
 
     /// Accelerations at a pose and its rates.
@@ -159,7 +159,7 @@ impl<'a> Equations<'a> {
     fn evaluate(&mut self, t: f64, motion: &[f64], out: &mut [f64]) -> Result<(), NotFinite> {
         let n = self.n;
         self.evaluations += 1;
-        let state = StateAt { x: &motion[2 * n..], ..StateAt::of(t, n, &self.state) };
+        let state = StateAt { x: &motion[2 * n..], ..StateAt::from_motion(t, n, &self.state) };
         let (_, rest) = out.split_at_mut(n);
         let (accelerations, rest) = rest.split_at_mut(n);
         self.loops.open(self.crane, &state, accelerations);

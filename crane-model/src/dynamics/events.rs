@@ -40,7 +40,7 @@ pub struct Phases<'a> {
 
 impl<'a> Phases<'a> {
     /// The phases of a crane with its present parameters.
-    pub fn of(crane: &'a dyn DynCrane) -> Self {
+    pub fn new(crane: &'a dyn DynCrane) -> Self {
         Self { first: crane, later: Vec::new() }
     }
 

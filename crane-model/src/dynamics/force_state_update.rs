@@ -17,7 +17,7 @@ use crate::{
     StateAt,
     dyn_crane::DynCrane,
     force_states::ForceStates,
-    stateful_force::{Row, STATES, StatefulForce},
+    stateful_force::{ForceRow, STATES, StatefulForce},
 };
 
 /// The crane's forces that have states, evaluated at a state of the crane, and their contribution to the system there.
@@ -274,7 +274,7 @@ impl ForceStateUpdate {
 }
 
 /// Local forces, which have one state each, and their rows.
-fn local(force_states: &ForceStates) -> impl Iterator<Item = (&StatefulForce, &Row)> {
+fn local(force_states: &ForceStates) -> impl Iterator<Item = (&StatefulForce, &ForceRow)> {
     let [coupled, _] = force_states.coupled();
     force_states.forces().iter().zip(force_states.rows()).skip(coupled)
 }

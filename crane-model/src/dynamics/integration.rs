@@ -254,7 +254,7 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
             work,
             dissipated,
             load_work,
-            ..Sample::new(StateAt::of(self.time, self.crane.size(), &self.motion), &[])
+            ..Sample::new(StateAt::from_motion(self.time, self.crane.size(), &self.motion), &[])
         }
     }
 

@@ -128,7 +128,7 @@ impl Norm {
         greatest.note_all(of_q, rates, |error, _| error.abs());
         greatest.note_all(of_v, rates, |error, rate| error.abs() * RATE / (rate.abs() + 1.0));
         greatest.note_each(of_x.iter().zip(&self.states), |(error, scale)| error.abs() / (OIL * scale));
-        greatest.note_each(self.efforts.iter(), |effort| effort.of(n, error, f64::abs) / (EFFORT * effort.scale));
+        greatest.note_each(self.efforts.iter(), |effort| effort.effort(n, error, f64::abs) / (EFFORT * effort.scale));
         greatest.value() / self.tolerance
     }
 
@@ -142,9 +142,9 @@ impl Norm {
         let n = self.n;
         for effort in &mut self.efforts {
             if effort.drive.is_none() {
-                effort.peak = effort.peak.max(effort.of(n, motion, |x| x).abs());
+                effort.peak = effort.peak.max(effort.effort(n, motion, |x| x).abs());
             }
-            effort.error = effort.error.max(effort.of(n, error, f64::abs));
+            effort.error = effort.error.max(effort.effort(n, error, f64::abs));
             effort.scale = effort.scale.max(effort.peak);
         }
     }
@@ -188,7 +188,7 @@ impl Norm {
 impl Effort {
     /// `s x + d ẋ` of a motion, with `part` applied to x and ẋ.
     #[inline]
-    fn of(&self, n: usize, motion: &[f64], part: fn(f64) -> f64) -> f64 {
+    fn effort(&self, n: usize, motion: &[f64], part: fn(f64) -> f64) -> f64 {
         self.stiffness * part(motion[self.coordinate]) + self.damping * part(motion[n + self.coordinate])
     }
 }

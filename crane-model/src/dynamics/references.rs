@@ -42,22 +42,22 @@ impl References {
     const LEAST: f64 = 1e-8;
 
     /// All driven coordinates, unless the rate of a motion jumps: a flexibly driven coordinate does not follow a jump.
-    pub fn of(crane: &dyn DynCrane) -> Self {
+    pub fn new(crane: &dyn DynCrane) -> Self {
         let jumps = jumps(crane);
-        Self::new(crane, |drive, rigid| rigid || !jumps[drive])
+        Self::where_drives(crane, |drive, rigid| rigid || !jumps[drive])
     }
 
     /// No coordinate.
     pub fn none(crane: &dyn DynCrane) -> Self {
-        Self::new(crane, |_, _| false)
+        Self::where_drives(crane, |_, _| false)
     }
 
     /// Only the coordinates of rigid drives.
     pub fn rigid(crane: &dyn DynCrane) -> Self {
-        Self::new(crane, |_, rigid| rigid)
+        Self::where_drives(crane, |_, rigid| rigid)
     }
 
-    fn new(crane: &dyn DynCrane, has_reference: impl Fn(usize, bool) -> bool) -> Self {
+    fn where_drives(crane: &dyn DynCrane, has_reference: impl Fn(usize, bool) -> bool) -> Self {
         let Description { drives, coordinates, cylinders, .. } = crane.description();
         let driven = drives.iter().enumerate().map(|(drive, info)| {
             let rigid = coordinates[info.coordinate].role == CoordinateRole::Prescribed;

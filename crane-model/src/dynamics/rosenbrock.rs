@@ -111,7 +111,7 @@ pub fn step<const N: usize, C: CraneModel<N>>(
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
     let crane = Instance::<N, _>(crane.clone());
-    let references = References::of(&crane);
+    let references = References::new(&crane);
     let mut equations = Equations::new(&crane, references);
     typed::step(&mut equations, t, h, state, &mut Stages::new(&crane, 2 * N))
 }
@@ -122,7 +122,7 @@ pub struct Rosenbrock<'a>(Adaptive<'a, Stages<'a>>);
 impl<'a> Rosenbrock<'a> {
     /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynCrane, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, References::of(crane));
+        let equations = Equations::new(crane, References::new(crane));
         let norm = Norm::with_efforts(crane, &equations.references, settings.tolerance);
         Self(Adaptive::new(Stages::new(crane, equations.len()), equations, norm))
     }

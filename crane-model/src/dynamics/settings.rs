@@ -52,7 +52,7 @@ impl Settings {
     pub const MANY_STEPS: f64 = 1e8;
 
     /// The run that the crane's spec describes, with the default method, without audit.
-    pub fn of(description: &Description) -> Self {
+    pub fn from_description(description: &Description) -> Self {
         let &Description { duration, step, output, .. } = description;
         Self {
             duration,

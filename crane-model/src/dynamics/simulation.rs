@@ -37,7 +37,7 @@ enum Way<'a> {
 /// Methods that run it do so if the start does not have as many numbers as the crane has coordinates.
 impl<'a> Simulation<'a> {
     /// A run of a crane by the method of the settings. Its events do not happen.
-    pub fn of<Size>(crane: impl AnyCrane<'a, Size>, start: impl Into<InitialState>, settings: &'a Settings) -> Self {
+    pub fn new<Size>(crane: impl AnyCrane<'a, Size>, start: impl Into<InitialState>, settings: &'a Settings) -> Self {
         Self { way: Way::Method(crane.for_dynamics()), begin: 0.0, start: start.into(), settings }
     }
 
@@ -53,7 +53,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// A run with a stepper made for this crane and these settings.
-    pub fn by<Size>(
+    pub fn with_stepper<Size>(
         stepper: &'a mut dyn Stepper,
         crane: impl AnyCrane<'a, Size>,
         start: impl Into<InitialState>,

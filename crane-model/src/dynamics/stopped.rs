@@ -73,7 +73,7 @@ impl StepContext<'_> {
 
     /// A run that stopped because a loop does not close.
     pub fn open(&self, crane: &dyn DynCrane, open: Open) -> Stopped {
-        let Gap { joint, direction, gap, unit, .. } = Gap::of(crane, open);
+        let Gap { joint, direction, gap, unit, .. } = Gap::new(crane, open);
         let along = if direction.is_empty() { joint } else { format!("{joint} along {direction}") };
         Stopped { coordinate: along.into(), value: gap, unit, ..self.stopped(Cause::OpenLoop, 0) }
     }

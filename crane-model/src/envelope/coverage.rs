@@ -23,7 +23,7 @@ const SLOPE: f64 = 1e-9;
 
 impl Coverage {
     /// Of some limits of a crane.
-    pub fn of(crane: &dyn DynCrane, limits: &Limits) -> Self {
+    pub fn new(crane: &dyn DynCrane, limits: &Limits) -> Self {
         let description = crane.description();
         let mut found = Self { considered: vec!["a stable equilibrium".to_owned()], ..Self::default() };
         found.ground(crane, limits);

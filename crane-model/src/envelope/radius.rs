@@ -21,7 +21,7 @@ pub struct SlewAxis {
 
 impl SlewAxis {
     /// The axis of the first drive, if that turns the crane about a vertical axis at the guess.
-    pub fn of(crane: &dyn DynCrane) -> Self {
+    pub fn new(crane: &dyn DynCrane) -> Self {
         /// Cosine of the tilt up to which an axis counts as vertical, some 8°.
         const VERTICAL: f64 = 0.99;
         let none = Self { drive: None, at: [0.0; 2] };

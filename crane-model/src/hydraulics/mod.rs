@@ -38,7 +38,7 @@ use crate::{
     CylinderInfo, Description, StateAt,
     dyn_crane::DynCrane,
     loop_joints,
-    stateful_force::{Evaluated, ForceState, Row, STATES, StatefulForces},
+    stateful_force::{Evaluated, ForceRow, ForceState, STATES, StatefulForces},
 };
 use cylinder::{Pump, ValveCylinder};
 pub(crate) use oil::Oil;
@@ -110,7 +110,7 @@ impl Hydraulics {
     }
 
     /// Sets the rows of the cylinders with a valve to those of the last evaluation.
-    fn update(&self, rows: &mut [Row]) {
+    fn update(&self, rows: &mut [ForceRow]) {
         let n = self.place[0].len();
         for (row, cylinder) in rows.iter_mut().zip(&self.cylinders) {
             let [first, end] = cylinder.info.spanned.map(|coordinate| cylinder.index * n + coordinate);
@@ -162,8 +162,8 @@ impl StatefulForces for Hydraulics {
         self.cylinders.iter().flat_map(of_cylinder).chain(pump).collect()
     }
 
-    fn rows(&self) -> Vec<Row> {
-        let row = |ValveCylinder { info: CylinderInfo { spanned: [first, end], .. }, .. }: &ValveCylinder| Row {
+    fn rows(&self) -> Vec<ForceRow> {
+        let row = |ValveCylinder { info: CylinderInfo { spanned: [first, end], .. }, .. }: &ValveCylinder| ForceRow {
             first: *first,
             entries: vec![0.0; end - first],
         };

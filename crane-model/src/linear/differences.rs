@@ -44,7 +44,7 @@ pub(super) fn state_matrix(
     for column in 0..2 * n + m {
         let mut steps = 0.0;
         let [before, after] = [-1.0, 1.0].map(|sign| {
-            let state = State::moved(moment, directions, column, scales, sign);
+            let state = NearbyState::moved(moment, directions, column, scales, sign);
             steps += sign * state.step;
             let motion = motion_at(crane, &state.at(moment.t));
             let free = free.iter().map(|&j| motion.accelerations[j]);
@@ -56,13 +56,13 @@ pub(super) fn state_matrix(
 }
 
 /// A state near another one.
-pub(super) struct State {
+pub(super) struct NearbyState {
     state: InitialState,
     /// How far, in the unit of the state that changed.
     pub step: f64,
 }
 
-impl State {
+impl NearbyState {
     /// One of the states moved by a step in the direction of `sign`.
     pub fn moved(moment: &StateAt<'_>, directions: &Directions, index: usize, scales: &[f64], sign: f64) -> Self {
         let n = directions.q.ncols();

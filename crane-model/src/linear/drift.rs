@@ -32,7 +32,7 @@ pub struct Drift {
 
 impl Drift {
     /// Of a state space at rest with these rates of the states of forces; `None` for an equilibrium.
-    pub(super) fn of(space: &StateSpace, rates: &[f64]) -> Option<Self> {
+    pub(super) fn new(space: &StateSpace, rates: &[f64]) -> Option<Self> {
         let (n, m) = (space.unknowns().len(), rates.len());
         if n == 0 || m == 0 {
             return None;

@@ -261,7 +261,7 @@ fn drift_of(crane: &dyn DynCrane, moment: &StateAt<'_>, space: &StateSpace, forc
     }
     let mut rates = vec![0.0; forces.len()];
     forces.evaluate(crane, moment, &mut rates, None);
-    Drift::of(space, &rates)
+    Drift::new(space, &rates)
 }
 
 /// Names and units of the states.

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::{Directions, differences::State};
+use super::{Directions, differences::NearbyState};
 use crate::{
     StateAt,
     dyn_crane::DynCrane,
@@ -80,7 +80,7 @@ pub(super) fn rows(
     for column in 0..2 * n + m {
         let mut steps = 0.0;
         let [before, after] = [-1.0, 1.0].map(|sign| {
-            let state = State::moved(moment, directions, column, scales, sign);
+            let state = NearbyState::moved(moment, directions, column, scales, sign);
             steps += sign * state.step;
             quantities_with(crane, &state.at(moment.t), &[])
         });

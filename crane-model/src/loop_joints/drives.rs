@@ -30,7 +30,7 @@ pub(super) fn fighting_valves(crane: &dyn DynCrane, q: &[f64], loops: &Loops) ->
     let mut jacobian = loops.jacobian().to_vec();
     without_pushes(crane, q, &mut jacobian, &mut vec![0.0; q.len()]);
     let free: Vec<usize> = (0..q.len()).filter(|j| !loops.prescribed.contains(j)).collect();
-    let unique = Balance::of(loops, &jacobian, &free)?.is_unique();
+    let unique = Balance::new(loops, &jacobian, &free)?.is_unique();
     let with_valves = description.cylinders.iter().filter(|cylinder| cylinder.valve.is_some());
     let in_loops = with_valves.filter(|cylinder| loops.is_moved_by(description.drives[cylinder.drive].coordinate));
     (!unique).then(|| in_loops.map(|cylinder| cylinder.name.to_string()).collect())

@@ -25,7 +25,7 @@ pub struct Gap {
 
 impl Gap {
     /// Of an equation of a crane.
-    pub(crate) fn of(crane: &dyn DynCrane, Open { equation, gap, is_rate }: Open) -> Self {
+    pub(crate) fn new(crane: &dyn DynCrane, Open { equation, gap, is_rate }: Open) -> Self {
         let (joint, info) = equation_of(crane.loop_joints(), equation);
         let is_coupling = joint.is_coupling();
         // That of an axis is a sine.
@@ -76,7 +76,7 @@ pub fn gap_at(crane: &dyn DynCrane, q: &[f64]) -> Option<Gap> {
     }
     loops.evaluate(crane, q, &vec![0.0; q.len()]);
     let widest = loops.widest();
-    (widest.gap > OPEN).then(|| Gap::of(crane, widest))
+    (widest.gap > OPEN).then(|| Gap::new(crane, widest))
 }
 
 /// Indices of the equations that are independent at a pose, among those of all joints.

@@ -38,9 +38,9 @@ pub(crate) fn required(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> 
     };
     let undriven = among(&[CoordinateRole::Prescribed, CoordinateRole::Driven]);
     let free = among(&[CoordinateRole::Prescribed]);
-    Balance::of(&loops, &jacobian, &undriven)
+    Balance::new(&loops, &jacobian, &undriven)
         .and_then(|balance| balance.is_unique().then(|| balance.multipliers(&rest)).flatten())
-        .or_else(|| Balance::of(&loops, &jacobian, &free)?.multipliers(&rest))
+        .or_else(|| Balance::new(&loops, &jacobian, &free)?.multipliers(&rest))
         .unwrap_or_else(|| vec![0.0; loops.states.len()])
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn at_rest(crane: &dyn DynCrane, t: f64, positions: &[f64], q: &[f64]
     loops.evaluate(crane, q, &vec![0.0; q.len()]);
     loops.choose();
     let free: Vec<usize> = (0..q.len()).filter(|i| !loops.prescribed.contains(i)).collect();
-    let balance = Balance::of(&loops, loops.jacobian(), &free);
+    let balance = Balance::new(&loops, loops.jacobian(), &free);
     balance.and_then(|balance| balance.multipliers(&residual)).unwrap_or_else(|| vec![0.0; loops.states.len()])
 }
 
@@ -105,7 +105,7 @@ pub(super) struct Balance<'a> {
 
 impl<'a> Balance<'a> {
     /// With the rows of `jacobian` in place of those of J; `None` without equations or coordinates, and if numbers are not finite.
-    pub fn of(loops: &'a Loops, jacobian: &[f64], coordinates: &'a [usize]) -> Option<Self> {
+    pub fn new(loops: &'a Loops, jacobian: &[f64], coordinates: &'a [usize]) -> Option<Self> {
         let (kept, n) = (loops.independent(), loops.n);
         if kept.is_empty() || coordinates.is_empty() || !jacobian.iter().all(|entry| entry.is_finite()) {
             return None;

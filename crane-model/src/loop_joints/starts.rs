@@ -43,7 +43,7 @@ pub(crate) fn close_start(
         return Ok(());
     }
     let mut mass = HeldMass::new(crane, &loops.prescribed);
-    loops.assemble(crane, q, &mut |q, r, x| mass.solve(q, r, x)).map_err(|open| Gap::of(crane, open))?;
+    loops.assemble(crane, q, &mut |q, r, x| mass.solve(q, r, x)).map_err(|open| Gap::new(crane, open))?;
     let mut loops = Loops::holding(crane, &given.rates);
     let mut mass = HeldMass::new(crane, &loops.prescribed);
     loops.evaluate(crane, q, v);
@@ -58,7 +58,7 @@ pub(crate) fn close_start(
         loops.subtract(v);
     }
     loops.evaluate(crane, q, v);
-    loops.opening(v).map_or(Ok(()), |open| Err(Gap::of(crane, open)))
+    loops.opening(v).map_or(Ok(()), |open| Err(Gap::new(crane, open)))
 }
 
 /// Moves a whole state at time `t`, s, onto the loops of a crane if it is on them to the digits with which states are written.
@@ -73,7 +73,7 @@ pub(crate) fn close_state(crane: &dyn DynCrane, t: f64, (q, v): (&mut [f64], &mu
     }
     loops.evaluate(crane, q, v);
     let found = loops.open_beyond(crane).or_else(|| loops.opening(v));
-    found.map_or(Ok(()), |open| Err(Gap::of(crane, open)))?;
+    found.map_or(Ok(()), |open| Err(Gap::new(crane, open)))?;
     close_start(crane, t, (q, v), &Given::default())
 }
 

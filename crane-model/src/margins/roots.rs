@@ -76,7 +76,7 @@ fn root(open: &Open<'_>, start: Complex<f64>, least: f64) -> Option<Complex<f64>
 
 /// The eigenvalues of the closed loop with an approximated dead time and Im λ ≥ 0.
 fn closed(open: &Open<'_>, highest: f64) -> Option<Vec<Complex<f64>>> {
-    let pencil = Pencil::of(open, highest);
+    let pencil = Pencil::new(open, highest);
     // Those of (M − σE)⁻¹ E are 1/(λ − σ): infinite ones, of parts without a state, become 0.
     let sigma = 0.73 * if highest > 0.0 { highest } else { 1.0 };
     let shifted = (&pencil.matrix - &pencil.rates * sigma).lu().solve(&pencil.rates)?;
@@ -92,7 +92,7 @@ struct Pencil {
 }
 
 impl Pencil {
-    fn of(Open { plant, of }: &Open<'_>, highest: f64) -> Self {
+    fn new(Open { plant, of }: &Open<'_>, highest: f64) -> Self {
         let Plant { c, terms, .. } = plant;
         let n = c.len();
         let mut pencil = Self { rates: DMatrix::identity(n, n), matrix: plant.matrix() };

@@ -38,7 +38,7 @@ pub struct UnstableServo {
 /// The mass matrix is not positive definite.
 pub fn with_servos(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Result<StateSpace, NoModes> {
     let mut forces = ForceStates::of_small_motions(crane.description());
-    let mut motions = SmallMotions::of(crane, q);
+    let mut motions = SmallMotions::about_pose(crane, q);
     add_cylinders(crane, q, &mut motions, |_, _| 0.0);
     let motions = motions.with_closed_loops(crane, t, q);
     let v = vec![0.0; q.len()];

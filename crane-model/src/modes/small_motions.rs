@@ -44,7 +44,7 @@ impl<const N: usize> From<&Linearisation<N>> for SmallMotions {
 
 impl SmallMotions {
     /// About the pose `q` of a crane of any size.
-    pub fn of(crane: &dyn DynCrane, q: &[f64]) -> Self {
+    pub fn about_pose(crane: &dyn DynCrane, q: &[f64]) -> Self {
         let zeros = || DMatrix::zeros(q.len(), q.len());
         let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
         crane.linearise(q, mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());

@@ -117,7 +117,7 @@ pub fn large_tilt(description: &Description, table: &Table) -> Option<String> {
 fn on_stop(description: &Description, table: &Table, coordinate: usize) -> Option<String> {
     let coordinate = &description.coordinates[coordinate];
     let column = stop_effort(&coordinate.name, coordinate.kind);
-    let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(table, &column);
+    let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of_column(table, &column);
     let (effort, time) = if -minimum > maximum { (-minimum, time_of_minimum) } else { (maximum, time_of_maximum) };
     let samples = table.values(&column)?.filter(|effort| *effort != 0.0).count();
     let met = table.time_of(samples);

@@ -26,7 +26,7 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
 /// Reports a rope that is pulled by more than its largest tension in a run.
 fn overloads(connector: &ConnectorInfo, table: &Table) -> Option<String> {
     connector.max_tension?;
-    let Extremes { maximum, time_of_maximum, .. } = Extremes::of(table, &connector_force(connector));
+    let Extremes { maximum, time_of_maximum, .. } = Extremes::of_column(table, &connector_force(connector));
     pulls_too_hard(connector, maximum, &format!(", at {time_of_maximum:.2} s"))
 }
 
@@ -65,7 +65,7 @@ fn bounces(connector: &ConnectorInfo, table: &Table) -> Option<String> {
 /// Reports when a rope is first slack in a run, for how long in total, and its largest force.
 fn goes_slack(connector: &ConnectorInfo, table: &Table) -> Option<String> {
     let column = connector_force(connector);
-    let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(table, &column);
+    let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of_column(table, &column);
     let samples = table.values(&column)?.filter(|force| *force == 0.0).count();
     let slack = table.time_of(samples);
     (connector.is_rope && minimum == 0.0).then(|| {

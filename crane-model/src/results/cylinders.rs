@@ -127,7 +127,7 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
 pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
     let mut found = Vec::new();
     for info in &description.cylinders {
-        let [length, _, _, piston, rod, _] = columns(&info.name).map(|column| Extremes::of(table, &column));
+        let [length, _, _, piston, rod, _] = columns(&info.name).map(|column| Extremes::of_column(table, &column));
         found.extend(out_of_stroke(info, &length, true));
         found.extend(over_pressure(info, [piston, rod], true));
     }
@@ -138,7 +138,7 @@ pub(super) fn of_run(description: &Description, table: &Table) -> Vec<String> {
         return found;
     }
     let Extremes { maximum: flow, time_of_maximum: time, .. } =
-        Extremes::of(table, &column_name(ColumnKind::Flow, PUMP, false));
+        Extremes::of_column(table, &column_name(ColumnKind::Flow, PUMP, false));
     let limit = description.pump.map(|pump| pump.max_flow).filter(|limit| flow > *limit);
     found.extend(limit.map(|limit| {
         format!(
@@ -174,7 +174,7 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
     info.valve.filter(|valve| !valve.commanded)?;
     let coordinate = &description.coordinates[description.drives[info.drive].coordinate];
     let wanted = column_name(ColumnKind::Prescribed, &coordinate.name, coordinate.kind.turns());
-    let range = Extremes::of(table, &wanted);
+    let range = Extremes::of_column(table, &wanted);
     let travel = range.maximum - range.minimum;
     let behind =
         table.values(&wanted)?.zip(table.values(&coordinate.name)?).map(|(wanted, actual)| (wanted - actual).abs());
@@ -204,7 +204,7 @@ fn falls_behind(description: &Description, info: &CylinderInfo, table: &Table) -
 /// A cylinder whose suction valves let in too little oil: pressures are relative to the atmosphere, so that none can be below −1 bar.
 fn below_vacuum(info: &CylinderInfo, table: &Table) -> Option<String> {
     const VACUUM: f64 = -1e5;
-    let [.., piston, rod, _] = columns(&info.name).map(|column| Extremes::of(table, &column));
+    let [.., piston, rod, _] = columns(&info.name).map(|column| Extremes::of_column(table, &column));
     let sides = [("piston", piston), ("rod", rod)];
     let (side, least) = sides.into_iter().find(|(_, pressure)| pressure.minimum < VACUUM)?;
     Some(format!(
@@ -254,7 +254,7 @@ pub struct HighestPressure {
 
 impl HighestPressure {
     /// The higher one of both sides.
-    fn of([piston, rod]: [Extremes; 2]) -> Self {
+    fn new([piston, rod]: [Extremes; 2]) -> Self {
         let (side, Extremes { maximum, time_of_maximum, .. }) =
             if piston.maximum >= rod.maximum { ("piston", piston) } else { ("rod", rod) };
         Self { side, pressure: maximum, time: time_of_maximum }
@@ -268,14 +268,14 @@ impl HighestPressure {
 
 /// The highest pressure in a cylinder over a run.
 pub fn highest_pressure(info: &CylinderInfo, table: &Table) -> HighestPressure {
-    let [.., piston, rod, _] = columns(&info.name).map(|column| Extremes::of(table, &column));
-    HighestPressure::of([piston, rod])
+    let [.., piston, rod, _] = columns(&info.name).map(|column| Extremes::of_column(table, &column));
+    HighestPressure::new([piston, rod])
 }
 
 /// A cylinder that holds more than the pump can move.
 fn beyond_pump(description: &Description, info: &CylinderInfo, state: &CylinderState) -> Option<String> {
     let pump = description.pump.and_then(|pump| pump.pressure)?;
-    let highest = HighestPressure::of(state.pressures.map(|pressure| Extremes::at(0.0, pressure)));
+    let highest = HighestPressure::new(state.pressures.map(|pressure| Extremes::at(0.0, pressure)));
     (highest.pressure > pump).then(|| {
         format!(
             "{} holds {:.0} bar on the side of its {}: the {:.0} bar of the pump do not move it against its load",
@@ -288,7 +288,7 @@ fn beyond_pump(description: &Description, info: &CylinderInfo, state: &CylinderS
 }
 
 fn over_pressure(info: &CylinderInfo, sides: [Extremes; 2], moves: bool) -> Option<String> {
-    let highest = HighestPressure::of(sides);
+    let highest = HighestPressure::new(sides);
     let limit = highest.relief(info)?;
     Some(format!(
         "{} needs {:.0} bar on the side of its {}{}: its relief valve opens at {:.0} bar",

@@ -75,21 +75,22 @@ pub struct Duties {
 
 impl Duties {
     /// Those of a run, from its results; integrals by the trapezoidal rule.
-    pub fn of(description: &Description, table: &Table) -> Self {
+    pub fn new(description: &Description, table: &Table) -> Self {
         let drives = description.drives.iter().enumerate().filter_map(|(index, drive)| {
             let CoordinateInfo { name, kind, .. } = &description.coordinates[drive.coordinate];
             let rate = column(table, &column_name(ColumnKind::Rate, name, kind.turns()))?;
             let cylinder = description.cylinders.iter().position(|cylinder| cylinder.drive == index);
-            DriveDuty::of(table, name, *kind, cylinder, &column(table, &drive_effort(name, *kind))?, &rate)
+            DriveDuty::new(table, name, *kind, cylinder, &column(table, &drive_effort(name, *kind))?, &rate)
         });
         let winches = description.connectors.iter().filter(|rope| rope.is_rope && rope.pieces > 0).filter_map(|rope| {
             let grows = column(table, &column_name(ColumnKind::StrainRate(Strain::Length), &rope.name, false))?;
             let shrinks: Vec<f64> = grows.iter().map(|rate| -rate).collect();
             let force = column(table, &connector_force(rope))?;
-            DriveDuty::of(table, &rope.name, CoordinateKind::Translation, None, &force, &shrinks)
+            DriveDuty::new(table, &rope.name, CoordinateKind::Translation, None, &force, &shrinks)
         });
         let of_cylinder = |info: &CylinderInfo| {
-            let [length, speed, force, piston, rod, flow] = columns(&info.name).map(|name| Extremes::of(table, &name));
+            let [length, speed, force, piston, rod, flow] =
+                columns(&info.name).map(|name| Extremes::of_column(table, &name));
             CylinderDuty {
                 name: info.name.to_string(),
                 push: force.maximum.max(0.0),
@@ -103,13 +104,13 @@ impl Duties {
         Self {
             drives: drives.chain(winches).collect(),
             cylinders: description.cylinders.iter().map(of_cylinder).collect(),
-            pump: PumpDuty::of(table),
+            pump: PumpDuty::new(table),
         }
     }
 }
 
 impl DriveDuty {
-    fn of(
+    fn new(
         table: &Table,
         name: &str,
         kind: CoordinateKind,
@@ -138,7 +139,7 @@ impl DriveDuty {
 }
 
 impl PumpDuty {
-    fn of(table: &Table) -> Option<Self> {
+    fn new(table: &Table) -> Option<Self> {
         let [flow, power] =
             [ColumnKind::Flow, ColumnKind::Power].map(|kind| column(table, &column_name(kind, PUMP, false)));
         let (flow, power) = (flow?, power?);

@@ -17,7 +17,7 @@ pub struct Extremes {
 
 impl Extremes {
     /// Extremes of the column with this name; zeros if there is none.
-    pub fn of(table: &Table, name: &str) -> Self {
+    pub fn of_column(table: &Table, name: &str) -> Self {
         let Some(values) = table.values(name) else { return Self::default() };
         let mut times = table.rows.iter().map(|row| row[0]).zip(values);
         let Some((t, first)) = times.next() else { return Self::default() };

@@ -38,7 +38,7 @@ fn presses_too_hard(support: &SupportInfo, force: f64, when: &str) -> Option<Str
 /// Supports that press harder than the ground bears in a run.
 fn pressing(description: &Description, table: &Table) -> impl Iterator<Item = String> {
     description.supports.iter().filter_map(|support| {
-        let Extremes { maximum, time_of_maximum, .. } = Extremes::of(table, &vertical_reaction(&support.name));
+        let Extremes { maximum, time_of_maximum, .. } = Extremes::of_column(table, &vertical_reaction(&support.name));
         presses_too_hard(support, maximum, &format!(", at {time_of_maximum:.2} s"))
     })
 }
@@ -87,8 +87,8 @@ pub struct Lift<'a> {
 pub fn lifts<'a>(description: &'a Description, table: &Table) -> Vec<Lift<'a>> {
     let one_sided = description.supports.iter().filter(|support| support.one_sided);
     let lift = |support: &'a SupportInfo| {
-        let Extremes { minimum, time_of_minimum, .. } = Extremes::of(table, &vertical_reaction(&support.name));
-        let gap = Extremes::of(table, &support_gap(&support.name));
+        let Extremes { minimum, time_of_minimum, .. } = Extremes::of_column(table, &vertical_reaction(&support.name));
+        let gap = Extremes::of_column(table, &support_gap(&support.name));
         (minimum <= 0.0).then_some(Lift {
             foot: &support.name,
             first: time_of_minimum,
@@ -112,7 +112,8 @@ pub struct Pull<'a> {
 
 /// The feet that pull the crane down in a run.
 pub fn pulls<'a>(description: &'a Description, table: &Table) -> Vec<Pull<'a>> {
-    let with_extremes = |support: &'a SupportInfo| (support, Extremes::of(table, &vertical_reaction(&support.name)));
+    let with_extremes =
+        |support: &'a SupportInfo| (support, Extremes::of_column(table, &vertical_reaction(&support.name)));
     let reactions: Vec<_> = description.supports.iter().map(with_extremes).collect();
     let greatest = reactions.iter().map(|(_, reaction)| reaction.size()).fold(0.0, f64::max);
     let pull = |(support, reaction): (&'a SupportInfo, Extremes)| {

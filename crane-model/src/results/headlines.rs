@@ -43,7 +43,7 @@ impl Kind {
         match (self.size, self.unit.as_str()) {
             (Size::Peak, "N" | "N m") => ROUNDING * force,
             (Size::Peak, _) => 0.0,
-            (Size::Range, _) => NOISE * Extremes::of(table, name).size(),
+            (Size::Range, _) => NOISE * Extremes::of_column(table, name).size(),
         }
     }
 }

@@ -88,7 +88,7 @@ pub fn instants<'a>(crane: &dyn DynCrane, rows: impl Iterator<Item = &'a Vec<f64
     let columns = quantities(crane.description(), crane.loop_joints());
     let index_of = |name: String| columns.iter().position(|column| column.name == name);
     let oil: Vec<usize> = force_states::columns(crane.description()).into_iter().filter_map(index_of).collect();
-    let mut phases = Phases::of(crane);
+    let mut phases = Phases::new(crane);
     rows.map(|row| {
         let x: Vec<f64> = oil.iter().map(|&index_of| row[index_of]).collect();
         Instant::moving(phases.at_row(row), &StateAt { t: row[0], q: &row[1..=n], v: &row[n + 1..=2 * n], x: &x })

@@ -12,12 +12,12 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
         return Vec::new();
     }
     let mut watch = Watch::new(crane);
-    let mut found: Vec<Found> = Vec::new();
+    let mut found: Vec<LoopColumns> = Vec::new();
     for (index, q) in table.poses(crane.description()).enumerate() {
         for caution in watch.cautions(q) {
             let angle = caution.angle();
             let Some(known) = found.iter_mut().find(|known| known.caution.is_like(&caution)) else {
-                found.push(Found { caution, last: index, passed: vec![(index, angle)] });
+                found.push(LoopColumns { caution, last: index, passed: vec![(index, angle)] });
                 continue;
             };
             match known.passed.last_mut() {
@@ -48,7 +48,7 @@ fn is_nearer(angle: Option<f64>, other: Option<f64>) -> bool {
 }
 
 /// A kind of caution.
-struct Found {
+struct LoopColumns {
     /// The first; of a dead centre the nearest.
     caution: Caution,
     /// The last result with such a caution.
@@ -57,7 +57,7 @@ struct Found {
     passed: Vec<(usize, Option<f64>)>,
 }
 
-impl Found {
+impl LoopColumns {
     /// When, in brackets; nothing at the start.
     fn when(&self, time: impl Fn(usize) -> f64) -> String {
         /// Times that are listed.

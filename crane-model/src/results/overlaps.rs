@@ -73,7 +73,7 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     if crane.stages().is_empty() {
         return Vec::new();
     }
-    let mut phases = Phases::of(crane);
+    let mut phases = Phases::new(crane);
     let mut worst: Vec<[Option<At<'_>>; 2]> = vec![[None; 2]; crane.stages().len()];
     for (sample, q) in table.poses(description).enumerate() {
         for (worst, now) in worst.iter_mut().zip(at(phases.at_row(&table.rows[sample]), q)) {

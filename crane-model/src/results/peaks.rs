@@ -35,7 +35,7 @@ impl Peaks {
     }
 
     /// Of the table of a run.
-    pub(crate) fn of(description: &Description, table: &Table) -> Self {
+    pub(crate) fn new(description: &Description, table: &Table) -> Self {
         let tracked = table.columns.iter().filter(|column| column.kind.has_peaks());
         let last = |name: &str| table.values(name).and_then(Iterator::last).unwrap_or(f64::NAN);
         let events = of_events(description).into_iter().map(|column| column.name);

@@ -55,7 +55,7 @@ impl<'a> Recording<'a> {
         .concat();
         Self {
             crane,
-            phases: Phases::of(crane),
+            phases: Phases::new(crane),
             extent: Extent::All,
             table: Table { columns, rows: Vec::new() },
             energy_at_start: 0.0,
@@ -68,7 +68,7 @@ impl<'a> Recording<'a> {
         columns.extend(of_events(crane.description()));
         Self {
             crane,
-            phases: Phases::of(crane),
+            phases: Phases::new(crane),
             extent: Extent::Peaks,
             table: Table { columns, rows: Vec::new() },
             energy_at_start: 0.0,

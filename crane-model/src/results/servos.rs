@@ -22,10 +22,10 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     };
     let n = crane.size();
     let mut found: Vec<UnstableServo> = Vec::new();
-    let mut phases = Phases::of(crane);
+    let mut phases = Phases::new(crane);
     for row in [first, last] {
         let crane = phases.at_row(row);
-        let equilibrium = Problem::of(crane).at_time(row[0]).from(&row[1..=n]).solve();
+        let equilibrium = Problem::new(crane).at_time(row[0]).from(&row[1..=n]).solve();
         if !equilibrium.is_stable() {
             continue;
         }

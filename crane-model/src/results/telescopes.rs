@@ -30,7 +30,7 @@ pub(super) fn of_run(crane: &dyn DynCrane, table: &Table) -> Vec<String> {
     if stages.is_empty() {
         return Vec::new();
     }
-    let (mut phases, mut greatest) = (Phases::of(crane), Vec::new());
+    let (mut phases, mut greatest) = (Phases::new(crane), Vec::new());
     for (row, q) in table.rows.iter().zip(table.poses(description)) {
         let overlaps = overlaps(phases.at_row(row), &stages, q);
         greatest.resize(overlaps.len(), 0.0);

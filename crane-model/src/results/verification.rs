@@ -122,7 +122,7 @@ impl Verification {
         let force = table.largest_force();
         let mut found = Vec::new();
         for kind in headlines(&table.columns) {
-            let sizes: Vec<f64> = kind.names.iter().map(|name| kind.size(&Extremes::of(table, name))).collect();
+            let sizes: Vec<f64> = kind.names.iter().map(|name| kind.size(&Extremes::of_column(table, name))).collect();
             let greatest = sizes.iter().copied().fold(0.0, f64::max);
             for (name, size) in kind.names.iter().zip(sizes) {
                 let Some([error, missed]) = self.find_errors(table, name) else { continue };

@@ -26,7 +26,7 @@ pub struct Case {
     pub parameters: Vec<f64>,
     /// Inputs, in the order of the description; none: those of the crane.
     pub inputs: Vec<Option<f64>>,
-    /// Pose at the start, if it is not that of [`Start::of`].
+    /// Pose at the start, if it is not that of [`Start::new`].
     pub q: Option<Vec<f64>>,
     /// Rates at the start.
     pub v: Option<Vec<f64>>,
@@ -108,7 +108,7 @@ pub fn run_ensemble(
     settings: &Settings,
     execution: &Execution<'_>,
 ) -> Vec<Outcome> {
-    let way = Way::of(crane, rows, settings);
+    let way = Way::choose(crane, rows, settings);
     let pieces = way.pieces(crane, rows);
     let waiting = Mutex::new(pieces.iter());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -151,7 +151,7 @@ pub fn constant_step(of_spec: Option<f64>, safe: f64) -> f64 {
 
 /// How many rows, one after the other, run as a fleet: the digits of their results depend on each other. Otherwise 1.
 pub fn rows_together(crane: &dyn DynCrane, settings: &Settings) -> usize {
-    match Way::of(crane, &[], settings) {
+    match Way::choose(crane, &[], settings) {
         Way::AsFleet { cranes } => cranes,
         Way::Alone | Way::InLanes => 1,
     }
@@ -170,7 +170,7 @@ enum Way {
 
 impl Way {
     /// The fastest way.
-    fn of(crane: &dyn DynCrane, rows: &[Case], settings: &Settings) -> Self {
+    fn choose(crane: &dyn DynCrane, rows: &[Case], settings: &Settings) -> Self {
         // Neither fleets nor lanes change their parameters during a run.
         if !crane.description().events.is_empty() {
             return Way::Alone;
@@ -285,11 +285,11 @@ fn outcome_of(crane: &dyn DynCrane, table: &Table, end: InitialState, run: Resul
     match failed {
         Ok(run) => {
             let of_run = cautions::of_run(crane, table, cautions::BEND);
-            Outcome { peaks: Some(Peaks::of(description, table)), end, cautions: of_run, run: Ok(run) }
+            Outcome { peaks: Some(Peaks::new(description, table)), end, cautions: of_run, run: Ok(run) }
         }
         Err(reason) => {
             let tilted = cautions::large_tilt(description, table).into_iter();
-            let run = Err(Reason::Failed(reason.of(&description.name)));
+            let run = Err(Reason::Failed(reason.for_crane(&description.name)));
             Outcome { peaks: None, end, cautions: tilted.collect(), run }
         }
     }

@@ -71,11 +71,11 @@ impl Failed {
 impl Reason {
     /// The reason for a crane for which statics found no stable equilibrium.
     pub fn no_equilibrium(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Self {
-        Self::Equilibrium { equilibrium: equilibrium.clone(), diagnosis: Diagnosis::of(crane, equilibrium) }
+        Self::Equilibrium { equilibrium: equilibrium.clone(), diagnosis: Diagnosis::new(crane, equilibrium) }
     }
 
     /// This reason for the crane with the given name.
-    pub fn of(self, crane: &Text) -> Failed {
+    pub fn for_crane(self, crane: &Text) -> Failed {
         Failed { crane: crane.clone(), reason: Box::new(self) }
     }
 

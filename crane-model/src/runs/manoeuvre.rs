@@ -35,7 +35,7 @@ pub struct Bound {
 
 impl Bound {
     /// The smallest over some poses; `None` if nothing limits the step.
-    pub fn of(poses: &[Pose], method: Method) -> Option<Self> {
+    pub fn smallest(poses: &[Pose], method: Method) -> Option<Self> {
         let bounds =
             poses.iter().filter_map(|pose| Some(Self { t: pose.t, limit: limit(&pose.modes, &method.stability())? }));
         bounds.min_by(|a, b| a.limit.step.total_cmp(&b.limit.step))
@@ -54,7 +54,7 @@ pub fn manoeuvre(crane: &dyn DynCrane, start: &Start, count: u16) -> Result<Vec<
     if start.rests {
         for index in 1..=count {
             let t = description.duration * f64::from(index) / f64::from(count);
-            let equilibrium = Problem::of(crane).at_time(t).from(&q).solve();
+            let equilibrium = Problem::new(crane).at_time(t).from(&q).solve();
             if !equilibrium.is_stable() {
                 break;
             }
@@ -67,7 +67,7 @@ pub fn manoeuvre(crane: &dyn DynCrane, start: &Start, count: u16) -> Result<Vec<
 
 fn modes_at(crane: &dyn DynCrane, t: f64, q: &[f64]) -> Result<Vec<DampedMode>, Failed> {
     let modes = modes::damped(&crane.small_motions_at(q));
-    let modes = modes.map_err(|no_modes| Reason::Modes(no_modes).of(&crane.description().name))?;
+    let modes = modes.map_err(|no_modes| Reason::Modes(no_modes).for_crane(&crane.description().name))?;
     Ok(limiting_modes(crane, t, q, &modes))
 }
 
@@ -79,5 +79,5 @@ pub fn limiting_modes(crane: &dyn DynCrane, t: f64, q: &[f64], damped: &[DampedM
 
 /// The limit of the step of [`Method::Rk4`] during the manoeuvre; `None` if there is none or there are no modes.
 pub fn step_limit(crane: &dyn DynCrane, start: &Start) -> Option<Bound> {
-    Bound::of(&manoeuvre(crane, start, POSES).ok()?, Method::Rk4)
+    Bound::smallest(&manoeuvre(crane, start, POSES).ok()?, Method::Rk4)
 }

@@ -29,14 +29,14 @@ impl QuasiStatic {
         most: usize,
         proceed: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Self {
-        let (mut phases, mut recording, mut q) = (Phases::of(crane), Recording::new(crane), start.q.clone());
+        let (mut phases, mut recording, mut q) = (Phases::new(crane), Recording::new(crane), start.q.clone());
         let (mut instants, mut restless) = (Vec::new(), Vec::new());
         let every = run.rows.len().div_ceil(most).max(1);
         let last = run.rows.len().saturating_sub(1);
         for (_, row) in run.rows.iter().enumerate().filter(|(index, _)| index % every == 0 || *index == last) {
             let (t, times) = (row[0], event_times(crane.description(), row));
             let present = phases.at(t, times);
-            let equilibrium = Problem::of(present).at_time(t).from(&q).solve();
+            let equilibrium = Problem::new(present).at_time(t).from(&q).solve();
             if equilibrium.is_stable() {
                 q = equilibrium.q;
                 recording.push_rest(t, &q, times);

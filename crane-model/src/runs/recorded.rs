@@ -132,10 +132,10 @@ pub(super) fn record_by(
             let cause = cause(crane.description(), &limit.mode);
             format!("the largest stable step is {:.3e} s, limited at t = {t} s by {cause}", limit.step)
         });
-        Reason::Stopped { stopped, near_singular: singular.clone(), limit }.of(&crane.description().name)
+        Reason::Stopped { stopped, near_singular: singular.clone(), limit }.for_crane(&crane.description().name)
     })?;
     if let Some((cylinder, time)) = results::unassembled(crane.description(), &table) {
-        return Err(Reason::Unassembled { cylinder, time }.of(&crane.description().name));
+        return Err(Reason::Unassembled { cylinder, time }.for_crane(&crane.description().name));
     }
     let off = imbalance(&table, exchanged_within_tolerance(crane, start, settings));
     let unbalanced = (settings.audit && off > IMBALANCE).then(|| {
@@ -180,7 +180,7 @@ fn left_out(description: &Description, table: &Table, end: f64) -> Vec<String> {
     let sentence = |(event, _): (&EventInfo, _)| match &event.moment {
         Moment::At(time) => format!("event {} at {time} s does not happen: the run ends at {end} s", event.name),
         Moment::When(condition) => {
-            let Extremes { minimum, maximum, .. } = Extremes::of(table, &condition.result);
+            let Extremes { minimum, maximum, .. } = Extremes::of_column(table, &condition.result);
             let first = table.values(&condition.result).and_then(|mut values| values.next()).unwrap_or(f64::NAN);
             let (name, unit) = (&event.name, &condition.unit);
             if condition.is_met(first) {

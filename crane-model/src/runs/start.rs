@@ -44,7 +44,7 @@ impl Start {
     ///
     /// # Errors
     /// There is no stable equilibrium, or the mass matrix is not positive definite.
-    pub fn of(crane: &dyn DynCrane) -> Result<Self, Failed> {
+    pub fn new(crane: &dyn DynCrane) -> Result<Self, Failed> {
         if crane.description().statics {
             Self::at(crane, &crane.equilibrium(&Settings::default()))
         } else {
@@ -52,9 +52,9 @@ impl Start {
         }
     }
 
-    /// The start of [`Start::of`] or, where there is none, the guess; [`Start::what`] says which, and whether the guess is on the loops.
+    /// The start of [`Start::new`] or, where there is none, the guess; [`Start::what`] says which, and whether the guess is on the loops.
     pub fn of_or_guess(crane: &dyn DynCrane) -> Self {
-        let mut start = Self::of(crane).unwrap_or_else(|_| Self::guess(crane));
+        let mut start = Self::new(crane).unwrap_or_else(|_| Self::guess(crane));
         if !start.rests && crane.loop_equations() > 0 {
             let closed = start.close_state(crane, 0.0).is_ok();
             if closed { GUESS_CLOSED } else { GUESS_OPEN }.clone_into(&mut start.what);
@@ -65,11 +65,11 @@ impl Start {
     /// The start of a crane at time `t`, s, with another pose, at rest, or with other rates, where these are given.
     ///
     /// # Errors
-    /// Those of [`Start::of`], if no pose is given; [`Reason::OpenStart`].
+    /// Those of [`Start::new`], if no pose is given; [`Reason::OpenStart`].
     pub fn with(crane: &dyn DynCrane, t: f64, q: Option<&[f64]>, v: Option<&[f64]>) -> Result<Self, Failed> {
         let mut start = match q {
             Some(q) => Self::given(InitialState::at_rest(q.to_vec())),
-            None => Self::of(crane)?,
+            None => Self::new(crane)?,
         };
         if let Some(v) = v {
             let what = match start.what.as_str() {
@@ -92,7 +92,7 @@ impl Start {
     /// [`Reason::OpenStart`]: it is further away.
     pub fn close_state(&mut self, crane: &dyn DynCrane, t: f64) -> Result<(), Failed> {
         close_state(crane, t, (&mut self.state.q, &mut self.state.v))
-            .map_err(|gap| Reason::OpenStart { gap, partly: false }.of(&crane.description().name))
+            .map_err(|gap| Reason::OpenStart { gap, partly: false }.for_crane(&crane.description().name))
     }
 
     /// Moves what is not given of a start at time `t`, s, onto the loops of the crane: given positions and rates hold exactly.
@@ -101,7 +101,7 @@ impl Start {
     /// [`Reason::OpenStart`]: what is given leaves no way to close a loop.
     pub fn close(&mut self, crane: &dyn DynCrane, t: f64, given: &Given) -> Result<(), Failed> {
         close_start(crane, t, (&mut self.state.q, &mut self.state.v), given)
-            .map_err(|gap| Reason::OpenStart { gap, partly: true }.of(&crane.description().name))
+            .map_err(|gap| Reason::OpenStart { gap, partly: true }.for_crane(&crane.description().name))
     }
 
     /// A given equilibrium.
@@ -111,11 +111,11 @@ impl Start {
     pub fn at(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Result<Self, Failed> {
         let name = &crane.description().name;
         if !equilibrium.is_stable() {
-            return Err(Reason::no_equilibrium(crane, equilibrium).of(name));
+            return Err(Reason::no_equilibrium(crane, equilibrium).for_crane(name));
         }
         let q = equilibrium.q.clone();
         if !q.is_empty() && crane.mass_matrix_at(&q).cholesky().is_none() {
-            return Err(Reason::MassMatrix.of(name));
+            return Err(Reason::MassMatrix.for_crane(name));
         }
         Ok(Self { state: InitialState::at_rest(q), what: EQUILIBRIUM.to_owned(), rests: true })
     }

@@ -103,7 +103,7 @@ pub enum Diagnosis {
 
 impl Diagnosis {
     /// Of an equilibrium that is not stable.
-    pub fn of(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Self {
+    pub fn new(crane: &dyn DynCrane, equilibrium: &Equilibrium) -> Self {
         let guess = open_guess(crane);
         if let Some(cylinder) = unassembled_at(crane, &guess) {
             return Self::Unassembled { cylinder };

@@ -31,7 +31,7 @@ impl RestSearch<'_> {
 
     /// [`Problem::stiffness_at`] a pose.
     pub(crate) fn stiffness_at(&self, q: &[f64]) -> Option<f64> {
-        Problem::of(self.crane).holding(self.positions).stiffness_at(q)
+        Problem::new(self.crane).holding(self.positions).stiffness_at(q)
     }
 
     /// The pose at rest, or how the search from the guess ended. `near`: positions of the drives, and the pose in which the crane rests there.
@@ -90,7 +90,7 @@ impl RestSearch<'_> {
     }
 
     fn search(&self, q: &[f64], settings: &Settings) -> Equilibrium {
-        Problem::of(self.crane).holding(self.positions).from(q).settings(settings).solve()
+        Problem::new(self.crane).holding(self.positions).from(q).settings(settings).solve()
     }
 }
 

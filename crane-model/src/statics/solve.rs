@@ -33,7 +33,7 @@ pub struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     /// The crane with its drives, loads and winches where they are at t = 0.
-    pub fn of<Size>(crane: impl AnyCrane<'a, Size>) -> Self {
+    pub fn new<Size>(crane: impl AnyCrane<'a, Size>) -> Self {
         Self { crane: crane.for_statics(), t: 0.0, positions: None, from: None, settings: Settings::default() }
     }
 

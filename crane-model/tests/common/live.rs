@@ -19,7 +19,7 @@ impl<const N: usize> Live<N> {
 
     /// The stable equilibrium.
     pub fn equilibrium(&self) -> SVector<f64, N> {
-        let equilibrium = statics::Problem::of(&self.0).solve();
+        let equilibrium = statics::Problem::new(&self.0).solve();
         assert!(equilibrium.is_stable(), "{}", equilibrium.status);
         SVector::from_column_slice(&equilibrium.q)
     }

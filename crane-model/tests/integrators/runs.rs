@@ -22,7 +22,7 @@ use crate::{implicit, state_after_a_second, stiff_lift, swinging};
 #[test]
 fn runs_of_one_crane_are_equal() {
     let (lift, _) = swinging(0.1);
-    let settings = Settings { method: Method::Rk4, duration: 0.5, ..Settings::of(lift.description()) };
+    let settings = Settings { method: Method::Rk4, duration: 0.5, ..Settings::from_description(lift.description()) };
     let start = InitialState::at_rest(vec![lift.sag() + 0.1]);
     let end = |run: Simulation<'_>| {
         let mut end = [0.0; 2];
@@ -33,9 +33,9 @@ fn runs_of_one_crane_are_equal() {
         (run.expect("a run").statistics.steps, end.map(f64::to_bits))
     };
     let on_slices = Instance::<1, _>(lift);
-    let typed = end(Simulation::of(&lift, &start, &settings));
-    assert_eq!(end(Simulation::of(&on_slices, &start, &settings)), typed);
-    assert_eq!(end(Simulation::by(&mut Rk4::new(&on_slices, &settings), &lift, &start, &settings)), typed);
+    let typed = end(Simulation::new(&lift, &start, &settings));
+    assert_eq!(end(Simulation::new(&on_slices, &start, &settings)), typed);
+    assert_eq!(end(Simulation::with_stepper(&mut Rk4::new(&on_slices, &settings), &lift, &start, &settings)), typed);
 }
 
 #[test]
@@ -46,11 +46,11 @@ fn unresolved_undamped_modes_do_not_grow_in_adaptive_runs() {
         method: Method::Bdf,
         tolerance: 0.1,
         duration: 600.0,
-        ..Settings::of(&common::description("", &[], &[]))
+        ..Settings::from_description(&common::description("", &[], &[]))
     };
     let mut most = 0.0_f64;
     let start = State::at_rest(Vector1::new(lift.sag() + 1e-3));
-    let run = Simulation::of(&lift, start, &settings)
+    let run = Simulation::new(&lift, start, &settings)
         .observe(|sample| {
             most = most.max((sample.q[0] - lift.sag()).abs());
             ControlFlow::Continue(())
@@ -80,9 +80,10 @@ fn efforts_are_right_however_stiff_the_drive() {
         let Lift { mass, amplitude, frequency, .. } = lift;
         let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(amplitude * frequency) };
         for method in [Method::Rosenbrock, Method::Bdf] {
-            let settings = Settings { method, duration: 3.0, output: 7e-3, ..Settings::of(lift.description) };
+            let settings =
+                Settings { method, duration: 3.0, output: 7e-3, ..Settings::from_description(lift.description) };
             let (mut worst, mut peak) = (0.0_f64, 0.0_f64);
-            let run = Simulation::of(&lift, start, &settings)
+            let run = Simulation::new(&lift, start, &settings)
                 .observe(|sample| {
                     let state = (Vector1::new(sample.q[0]), Vector1::new(sample.v[0]));
                     let effort = lift.drive_forces(sample.t, &state.0, &state.1).x;
@@ -108,8 +109,8 @@ fn effort_error_includes_rounding_of_positions() {
     let lift = Lift { stiffness: 1e18, damping: 1e15, ..Lift::default() };
     let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(lift.amplitude * lift.frequency) };
     for method in [Method::Rosenbrock, Method::Bdf] {
-        let settings = Settings { method, duration: 1.0, ..Settings::of(lift.description) };
-        let run = Simulation::of(&lift, start, &settings).run().expect("a run");
+        let settings = Settings { method, duration: 1.0, ..Settings::from_description(lift.description) };
+        let run = Simulation::new(&lift, start, &settings).run().expect("a run");
         assert!(run.efforts[0].error > 10.0, "{method}: {run:?}");
     }
 }
@@ -117,10 +118,15 @@ fn effort_error_includes_rounding_of_positions() {
 /// Maximum error of a run of the lift at its results, m, and the run's statistics.
 fn lift_error(method: Method, tolerance: f64, output: f64) -> (f64, crane_model::dynamics::Run) {
     let lift = Lift::default();
-    let settings =
-        Settings { method, tolerance, output, duration: 3.0, ..Settings::of(&common::description("", &[], &[])) };
+    let settings = Settings {
+        method,
+        tolerance,
+        output,
+        duration: 3.0,
+        ..Settings::from_description(&common::description("", &[], &[]))
+    };
     let mut worst = 0.0_f64;
-    let run = Simulation::of(&lift, State::at_rest(Vector1::new(lift.sag())), &settings)
+    let run = Simulation::new(&lift, State::at_rest(Vector1::new(lift.sag())), &settings)
         .observe(|sample| {
             worst = worst.max((sample.q[0] - lift.exact(sample.t)).abs());
             ControlFlow::Continue(())
@@ -153,12 +159,17 @@ fn dense_output_does_not_shorten_steps() {
 fn a_motion_after_a_rest_is_not_stepped_over() {
     // A drive that rests, moves by 0.1 m and back within 4 ms, and rests again: shorter than any step at rest.
     let lift = Lift::bumped(5.0133, 4e-3);
-    let settings =
-        |method| Settings { method, tolerance: 1e-7, output: 5.1, duration: 5.1, ..Settings::of(lift.description) };
+    let settings = |method| Settings {
+        method,
+        tolerance: 1e-7,
+        output: 5.1,
+        duration: 5.1,
+        ..Settings::from_description(lift.description)
+    };
     let end = |settings: &Settings| {
         let mut end = 0.0;
         let rest = State::at_rest(Vector1::new(lift.sag()));
-        let run = Simulation::of(&lift, rest, settings).observe(|sample| {
+        let run = Simulation::new(&lift, rest, settings).observe(|sample| {
             end = sample.q[0] - lift.sag();
             ControlFlow::Continue(())
         });
@@ -228,9 +239,10 @@ fn statistics_equal_the_counted_evaluations() {
         // In the first seconds of the double pendulum, steps are rejected now and then.
         let crane =
             Counted { crane: DoublePendulum::hanging(), evaluations: Arc::default(), factorisations: Arc::default() };
-        let settings = Settings { method, tolerance: 1e-6, duration: 3.0, ..Settings::of(crane.crane.description) };
+        let settings =
+            Settings { method, tolerance: 1e-6, duration: 3.0, ..Settings::from_description(crane.crane.description) };
         let start = State::at_rest(Vector2::new(2.2, -0.5));
-        let run = Simulation::of(&crane, start, &settings).run().expect("a run");
+        let run = Simulation::new(&crane, start, &settings).run().expect("a run");
         assert_eq!(run.statistics.evaluations, crane.evaluations.load(Ordering::Relaxed), "{method}");
         assert_eq!(run.statistics.factorisations, crane.factorisations.load(Ordering::Relaxed), "{method}");
         let tried = run.statistics.steps + run.statistics.rejections;
@@ -242,9 +254,9 @@ fn statistics_equal_the_counted_evaluations() {
 fn a_run_ends_at_its_limit_of_steps() {
     let lift = Lift::default();
     for method in Method::ALL {
-        let settings = Settings { method, most_steps: 20, ..Settings::of(lift.description) };
+        let settings = Settings { method, most_steps: 20, ..Settings::from_description(lift.description) };
         let rest = State::at_rest(Vector1::new(lift.sag()));
-        let stopped = Simulation::of(&lift, rest, &settings).run().expect_err("too many steps");
+        let stopped = Simulation::new(&lift, rest, &settings).run().expect_err("too many steps");
         assert_eq!((stopped.cause, stopped.method), (Cause::Steps, method));
         assert!(stopped.time > 0.0 && stopped.time < 10.0, "{stopped:?}");
         let (message, advice) = (stopped.to_string(), stopped.advice());
@@ -260,9 +272,10 @@ fn a_run_ends_at_its_limit_of_steps() {
 #[test]
 fn a_run_that_would_take_too_many_steps_ends_early() {
     let lift = Lift { stiffness: 1e16 * Lift::default().mass, ..Lift::default() };
-    let settings = Settings { method: Method::DormandPrince, duration: 10.0, ..Settings::of(lift.description) };
+    let settings =
+        Settings { method: Method::DormandPrince, duration: 10.0, ..Settings::from_description(lift.description) };
     let start = State { q: Vector1::new(lift.sag()), v: Vector1::new(1.0) };
-    let stopped = Simulation::of(&lift, start, &settings).run().expect_err("too many steps");
+    let stopped = Simulation::new(&lift, start, &settings).run().expect_err("too many steps");
     assert_eq!(stopped.cause, Cause::Steps);
     // 2e4 steps of less than 1e-7 s.
     assert!(stopped.time < 2e-3 && stopped.step < 1e-7, "{stopped:?}");
@@ -279,10 +292,10 @@ fn energy_is_audited_by_every_method() {
                 tolerance,
                 audit: true,
                 output: 0.1,
-                ..Settings::of(&common::description("", &[], &[]))
+                ..Settings::from_description(&common::description("", &[], &[]))
             };
             let (mut first, mut worst) = (None, 0.0_f64);
-            Simulation::of(&lift, State::at_rest(Vector1::new(lift.sag())), &settings)
+            Simulation::new(&lift, State::at_rest(Vector1::new(lift.sag())), &settings)
                 .observe(|sample| {
                     let (q, v) = (Vector1::new(sample.q[0]), Vector1::new(sample.v[0]));
                     let energy = lift.kinetic_energy(&q, &v) + lift.potential_energy(sample.t, &q);
@@ -302,14 +315,14 @@ fn energy_is_audited_by_every_method() {
 #[test]
 fn an_adaptive_run_without_inertia_or_bounds_stops() {
     for method in [Method::DormandPrince, Method::Rosenbrock, Method::Bdf] {
-        let settings = Settings { method, ..Settings::of(&common::description("", &[], &[])) };
+        let settings = Settings { method, ..Settings::from_description(&common::description("", &[], &[])) };
         let massless = Lift { mass: 0.0, ..Lift::default() };
         let start = State::at_rest(Vector1::zeros());
-        let stopped = Simulation::of(&massless, start, &settings).run().expect_err("no mass");
+        let stopped = Simulation::new(&massless, start, &settings).run().expect_err("no mass");
         assert_eq!((stopped.cause, stopped.coordinate.as_str()), (Cause::MassMatrix, "lift_z"), "{method}");
         let pendulum = DoublePendulum { gravity: 1e300, ..DoublePendulum::hanging() };
         let start = State::at_rest(Vector2::new(0.4, -0.3));
-        let stopped = Simulation::of(&pendulum, start, &settings).run().expect_err("no number");
+        let stopped = Simulation::new(&pendulum, start, &settings).run().expect_err("no number");
         assert_ne!(stopped.cause, Cause::MassMatrix, "{method}: {stopped:?}");
         assert!(!stopped.advice().is_empty());
     }

@@ -11,14 +11,14 @@ use nalgebra::{SVector, Vector1, Vector2};
 
 /// A run of a crane by the classical Runge–Kutta method.
 fn classical(description: &Description) -> Settings {
-    Settings { method: Method::Rk4, ..Settings::of(description) }
+    Settings { method: Method::Rk4, ..Settings::from_description(description) }
 }
 
 /// First coordinate every 0.1 s for 1 s, in steps of `step`, s.
 fn motion<const N: usize, C: CraneModel<N>>(crane: &C, start: SVector<f64, N>, step: f64) -> Vec<(f64, f64)> {
     let mut motion = Vec::new();
     let settings = Settings { duration: 1.0, step, output: 0.1, ..classical(crane.description()) };
-    Simulation::of(crane, rk4::State::at_rest(start), &settings)
+    Simulation::new(crane, rk4::State::at_rest(start), &settings)
         .observe(|sample| {
             motion.push((sample.t, sample.q[0]));
             ControlFlow::Continue(())
@@ -56,7 +56,7 @@ fn energy_error<const N: usize, C: CraneModel<N>>(crane: &C, start: SVector<f64,
     let settings = Settings { duration: 4.0, step, output: 0.1, audit: true, ..classical(crane.description()) };
     let mut first = None;
     let mut worst = 0.0_f64;
-    Simulation::of(crane, rk4::State::at_rest(start), &settings)
+    Simulation::new(crane, rk4::State::at_rest(start), &settings)
         .observe(|sample| {
             let (q, v) = (SVector::from_column_slice(sample.q), SVector::from_column_slice(sample.v));
             let energy = crane.kinetic_energy(&q, &v) + crane.potential_energy(sample.t, &q);
@@ -91,7 +91,7 @@ fn results_come_at_their_own_interval() {
     let settings =
         Settings { duration: 0.1, step: 7e-3, output: 0.03, ..classical(&common::description("", &[], &[])) };
     let mut times = Vec::new();
-    let run = Simulation::of(&lift, rk4::State::at_rest(Vector1::zeros()), &settings)
+    let run = Simulation::new(&lift, rk4::State::at_rest(Vector1::zeros()), &settings)
         .observe(|sample| {
             times.push(sample.t);
             ControlFlow::Continue(())
@@ -109,7 +109,7 @@ fn results_come_at_their_own_interval() {
 fn an_observer_breaks_off_a_run() {
     let lift = Lift::default();
     let settings = classical(&common::description("", &[], &[]));
-    let run = Simulation::of(&lift, rk4::State::at_rest(Vector1::zeros()), &settings)
+    let run = Simulation::new(&lift, rk4::State::at_rest(Vector1::zeros()), &settings)
         .observe(|sample| if sample.t < 0.5 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
         .expect("a stable run");
     assert!((run.time - 0.5).abs() < 1e-12);
@@ -122,7 +122,7 @@ fn a_step_beyond_the_limit_stops_with_time_coordinate_and_advice() {
     let run = |step| {
         let settings =
             Settings { duration: 400.0, step, output: step, ..classical(&common::description("", &[], &[])) };
-        Simulation::of(&lift, rk4::State::at_rest(Vector1::new(lift.sag())), &settings).run()
+        Simulation::new(&lift, rk4::State::at_rest(Vector1::new(lift.sag())), &settings).run()
     };
     assert!(run(0.141).is_ok());
     let stopped = run(0.143).expect_err("a run beyond the stability limit");
@@ -139,7 +139,7 @@ fn a_massless_crane_is_refused() {
     let lift = Lift { mass: 0.0, ..Lift::default() };
     let settings = classical(&common::description("", &[], &[]));
     let stopped =
-        Simulation::of(&lift, rk4::State::at_rest(Vector1::zeros()), &settings).run().expect_err("no mass, no motion");
+        Simulation::new(&lift, rk4::State::at_rest(Vector1::zeros()), &settings).run().expect_err("no mass, no motion");
     assert_eq!((stopped.cause, stopped.coordinate.as_str()), (Cause::MassMatrix, "lift_z"));
 }
 
@@ -147,7 +147,7 @@ fn a_massless_crane_is_refused() {
 fn a_joint_without_inertia_is_named() {
     let pendulum = DoublePendulum { mass: [2.0, 0.0], ..DoublePendulum::hanging() };
     let settings = classical(pendulum.description);
-    let stopped = Simulation::of(&pendulum, rk4::State::at_rest(Vector2::zeros()), &settings)
+    let stopped = Simulation::new(&pendulum, rk4::State::at_rest(Vector2::zeros()), &settings)
         .run()
         .expect_err("no mass, no motion");
     assert_eq!((stopped.cause, stopped.coordinate.as_str()), (Cause::MassMatrix, "lower"));
@@ -161,7 +161,7 @@ fn a_step_out_of_all_bounds_is_no_want_of_inertia() {
     // The first stage already overflows: the mass matrix there is NaN, that at the start is valid.
     let pendulum = DoublePendulum { gravity: 1e300, ..DoublePendulum::hanging() };
     let settings = Settings { step: 1e10, output: 1e10, duration: 1e10, ..classical(pendulum.description) };
-    let stopped = Simulation::of(&pendulum, rk4::State::at_rest(Vector2::new(0.4, -0.3)), &settings)
+    let stopped = Simulation::new(&pendulum, rk4::State::at_rest(Vector2::new(0.4, -0.3)), &settings)
         .run()
         .expect_err("no number");
     assert_eq!(stopped.cause, Cause::Growth);

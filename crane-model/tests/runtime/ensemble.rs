@@ -13,7 +13,7 @@ fn knuckle_booms(count: u32) -> Vec<(knuckle_boom::Crane, State<{ knuckle_boom::
     let crane = |index| {
         let crane = knuckle_boom::Crane::new(knuckle_boom::Params { payload: 100.0 * f64::from(index) })
             .expect("a payload not below zero");
-        let q = statics::Problem::of(&crane).solve().q;
+        let q = statics::Problem::new(&crane).solve().q;
         (crane, State::at_rest(SVector::from_column_slice(&q)))
     };
     (0..count).map(crane).collect()
@@ -24,7 +24,7 @@ fn settings() -> Settings {
     Settings {
         method: Method::Rk4,
         duration: 0.1,
-        ..Settings::of(dyn_crane::boxed::<{ knuckle_boom::N }, knuckle_boom::Crane>().description())
+        ..Settings::from_description(dyn_crane::boxed::<{ knuckle_boom::N }, knuckle_boom::Crane>().description())
     }
 }
 
@@ -44,7 +44,7 @@ fn single_step<const N: usize, C: CraneModel<N>>(crane: &C, t: f64, h: f64, Stat
 
 fn lanes_are_single_cranes<const N: usize, C: CraneModel<N> + Copy>(cranes: [(C, State<N>); 8], h: f64, steps: u32) {
     let lanes = C::lanes(std::array::from_fn(|lane| &cranes[lane].0));
-    let mut states = ensemble::States::of(std::array::from_fn(|lane| &cranes[lane].1));
+    let mut states = ensemble::States::from_lanes(std::array::from_fn(|lane| &cranes[lane].1));
     let mut single = cranes.map(|(_, start)| start);
     for k in 0..steps {
         let t = f64::from(k) * h;
@@ -75,7 +75,7 @@ fn eight_lanes_are_eight_single_runs() {
         let load_mass = 100.0 * lane as f64;
         let crane =
             eight_link_flexible::Crane::new(eight_link_flexible::Params { load_mass }).expect("a load not below zero");
-        let q = statics::Problem::of(&crane).solve().q;
+        let q = statics::Problem::new(&crane).solve().q;
         (crane, State::at_rest(SVector::from_column_slice(&q)))
     };
     lanes_are_single_cranes(std::array::from_fn(flexible), 1e-4, 20);
@@ -102,7 +102,7 @@ fn an_ensemble_of_any_size_ends_where_single_runs_end() {
     assert!(stopped.iter().all(Option::is_none), "{stopped:?}");
     for ((crane, start), last) in cranes.iter().zip(&last) {
         let mut single = Vec::new();
-        let run = Simulation::of(crane, *start, &settings()).observe(|sample| {
+        let run = Simulation::new(crane, *start, &settings()).observe(|sample| {
             single = sample.q.to_vec();
             std::ops::ControlFlow::Continue(())
         });
@@ -138,7 +138,7 @@ fn a_crane_that_blows_up_does_not_harm_its_neighbours() {
 fn a_step_of_eight_cranes_allocates_nothing() {
     let cranes = knuckle_booms(8);
     let lanes = knuckle_boom::Crane::lanes(std::array::from_fn(|lane| &cranes[lane].0));
-    let mut states = ensemble::States::of(std::array::from_fn(|lane| &cranes[lane].1));
+    let mut states = ensemble::States::from_lanes(std::array::from_fn(|lane| &cranes[lane].1));
     let info = allocation_counter::measure(|| {
         for k in 0..100 {
             ensemble::step(&lanes, f64::from(k) * 1e-3, 1e-3, &mut states);

@@ -77,12 +77,12 @@ fn the_slewing_axis_is_found_where_it_stands() {
     // Also where the joint's own axis points downwards. The numbers are some roundings of lengths of order 1.
     for turned in ["", ", rotation: {x: 180 deg}"] {
         let truck = TRUCK.replace("translation: [0.25, 0, 1]", &format!("translation: [0.25, 0, 1]{turned}"));
-        let SlewAxis { drive, at } = SlewAxis::of(&crane(&truck));
+        let SlewAxis { drive, at } = SlewAxis::new(&crane(&truck));
         assert_eq!(drive, Some(0), "{turned}");
         assert!((at[0] - 0.25).abs() < 1e-12 && at[1].abs() < 1e-12, "{turned}: {at:?}");
     }
     let boom = crane(&TRUCK.replace("translation: [0.25, 0, 1]", "translation: [0.25, 0, 1], rotation: {x: 90 deg}"));
-    assert_eq!(SlewAxis::of(&boom), SlewAxis { drive: None, at: [0.0, 0.0] });
+    assert_eq!(SlewAxis::new(&boom), SlewAxis { drive: None, at: [0.0, 0.0] });
 }
 
 /// A massless boom of 4 m over the ground, lifted by a drive; its load is a point.
@@ -180,7 +180,7 @@ fn every_pose_is_as_a_crane_alone() {
         let mut slack = |load: f64| {
             DynCrane::set_parameter(&mut alone, 0, load).unwrap();
             let crane: &dyn DynCrane = &alone;
-            let found = Problem::of(crane).from(near).solve();
+            let found = Problem::new(crane).from(near).solve();
             assert!(found.is_stable());
             let (rest, q) = (vec![0.0; found.q.len()], &found.q);
             let lines = crane_model::tipping::lines(crane, 0.0, q, &rest, &rest);
@@ -222,7 +222,7 @@ fn positions_held_are_motions_that_hold() {
         let held = crane(&spec("{hold: 0.9}"));
         let (moving, held): (&dyn DynCrane, &dyn DynCrane) = (&moving, &held);
         let settings = Settings::default();
-        let one = Problem::of(moving).holding(&[0.9]).from(&[0.3]).settings(&settings).solve();
+        let one = Problem::new(moving).holding(&[0.9]).from(&[0.3]).settings(&settings).solve();
         let other = held.equilibrium(&settings);
         assert!(one.is_stable() && (one.q[0] - other.q[0]).abs() < 1e-12, "{} {}", one.q[0], other.q[0]);
         let efforts = [moving.drive_efforts_holding(0.0, &[0.9], &one.q)[0], held.drive_efforts_at_rest(&other.q)[0]];

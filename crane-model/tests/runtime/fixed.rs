@@ -19,7 +19,7 @@ fn a_crane_without_coordinates_rests_and_does_not_vibrate() {
     let settings = dynamics::Settings {
         method: dynamics::Method::Rk4,
         duration: 0.01,
-        ..dynamics::Settings::of(crane.description())
+        ..dynamics::Settings::from_description(crane.description())
     };
     let run = crane
         .simulate(&dynamics::InitialState::default(), &settings, &mut |_| ControlFlow::Continue(()))

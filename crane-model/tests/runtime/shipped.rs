@@ -62,14 +62,14 @@ fn every_spec_asks_for_a_stable_step() {
 fn steps_of_the_reference_crane_allocate_nothing() {
     use cranes::eight_link_flexible::{Crane, N};
     let crane = Crane::default();
-    let equilibrium = statics::Problem::of(&crane).solve();
+    let equilibrium = statics::Problem::new(&crane).solve();
     let start = rk4::State::at_rest(SVector::<f64, N>::from_column_slice(&equilibrium.q));
     let description = CraneModel::<N>::description(&crane);
     for method in Method::ALL {
         // Memory is allocated once per run: a run ten times as long allocates as often.
         let [short, long] = [0.02, 0.2].map(|duration| {
-            let settings = Settings { method, duration, audit: true, ..Settings::of(description) };
-            let run = || Simulation::of(&crane, start, &settings).run().expect("a stable run");
+            let settings = Settings { method, duration, audit: true, ..Settings::from_description(description) };
+            let run = || Simulation::new(&crane, start, &settings).run().expect("a stable run");
             allocation_counter::measure(|| _ = run()).count_total
         });
         assert_eq!(short, long, "{method}");
@@ -79,7 +79,7 @@ fn steps_of_the_reference_crane_allocate_nothing() {
 /// Path of the points of a run, m, point by point, and its statistics.
 fn path(crane: &dyn DynCrane, method: Method, tolerance: f64) -> (Vec<Vec<Vector3<f64>>>, Statistics) {
     let start = crane.equilibrium(&statics::Settings::default()).q;
-    let settings = Settings { method, tolerance, step: 1e-4, ..Settings::of(crane.description()) };
+    let settings = Settings { method, tolerance, step: 1e-4, ..Settings::from_description(crane.description()) };
     let mut path = Vec::new();
     let run = crane
         .simulate(&InitialState::at_rest(start), &settings, &mut |sample| {
@@ -116,7 +116,7 @@ fn implicit_methods_hold_their_tolerance_on_the_reference_crane() {
 /// Maximum effort of each drive over the run that the spec requests, N or N m.
 fn peaks(crane: &dyn DynCrane, method: Method, tolerance: f64) -> Vec<f64> {
     let start = InitialState::at_rest(crane.equilibrium(&statics::Settings::default()).q);
-    let defaults = Settings::of(crane.description());
+    let defaults = Settings::from_description(crane.description());
     let settings = Settings { method, tolerance, ..defaults };
     let mut peaks = vec![0.0_f64; crane.description().drives.len()];
     crane
@@ -136,7 +136,7 @@ fn efforts_of_drives_are_right_to_a_thousandth_at_the_default_tolerance() {
         let description = crane.description();
         let exact = peaks(crane.as_ref(), Method::Bdf, 1e-8);
         for method in [Method::Bdf, Method::Rosenbrock] {
-            let found = peaks(crane.as_ref(), method, Settings::of(description).tolerance);
+            let found = peaks(crane.as_ref(), method, Settings::from_description(description).tolerance);
             let errors: Vec<f64> = found.iter().zip(&exact).map(|(found, exact)| found / exact - 1.0).collect();
             println!("{} {method}: {errors:?}", description.name);
             // Where feet lift, joints rub and valves open, forces have kinks.

@@ -67,10 +67,10 @@ fn predicted_limits_of_all_shipped_cranes_are_observed() {
         ($($name:ident),*) => {$({
             let crane = cranes::$name::Crane::default();
             let vector = |q: &[f64]| SVector::<f64, { cranes::$name::N }>::from_column_slice(q);
-            let start = statics::Problem::of(&crane).solve().q;
+            let start = statics::Problem::new(&crane).solve().q;
             // At the end the drives stand still; at t = 0 some already move.
             let t = cranes::$name::DESCRIPTION.duration;
-            let end = statics::Problem::of(&crane).at_time(t).from(&start).solve();
+            let end = statics::Problem::new(&crane).at_time(t).from(&start).solve();
             assert!(end.is_stable(), "{}", end.status);
             agree(stringify!($name), &crane, t, &vector(&end.q));
             seen += 1;
@@ -157,7 +157,7 @@ fn the_derivative_is_that_of_the_function() {
 fn the_limit_of_the_reference_crane_in_plain_words() {
     use crane_shipped::eight_link_flexible::{Crane, DESCRIPTION, N};
     let crane = Crane::default();
-    let q = statics::Problem::of(&crane).solve().q;
+    let q = statics::Problem::new(&crane).solve().q;
     let q = SVector::<f64, N>::from_column_slice(&q);
     let modes = damped(&SmallMotions::from(&crane.linearise(&q))).expect("modes");
     let limit = limit(&modes, &Method::Rk4.stability()).expect("a limit");

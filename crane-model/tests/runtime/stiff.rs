@@ -68,11 +68,12 @@ impl CraneModel<2> for ElasticPendulum {
 /// Three seconds from 60°, with the rod stretched by gravity as at rest there; poses every 0.1 s.
 fn swing(stiffness: f64, method: Method, tolerance: f64) -> (Vec<Vector2<f64>>, Run) {
     let pendulum = ElasticPendulum { stiffness, damping: 1e-3 * stiffness };
-    let settings = Settings { method, tolerance, duration: 3.0, output: 0.1, ..Settings::of(&DESCRIPTION) };
+    let settings =
+        Settings { method, tolerance, duration: 3.0, output: 0.1, ..Settings::from_description(&DESCRIPTION) };
     let angle = 60_f64.to_radians();
     let start = State::at_rest(Vector2::new(GRAVITY * angle.cos() / stiffness, angle));
     let mut poses = Vec::new();
-    let run = Simulation::of(&pendulum, start, &settings).observe(|sample| {
+    let run = Simulation::new(&pendulum, start, &settings).observe(|sample| {
         poses.push(Vector2::from_column_slice(sample.q));
         ControlFlow::Continue(())
     });

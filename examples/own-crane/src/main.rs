@@ -15,14 +15,14 @@ mod own_crane {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let crane = Crane::new(Params { payload: 500.0 })?;
-    let rest = statics::Problem::of(&crane).solve();
+    let rest = statics::Problem::new(&crane).solve();
     println!("{}, {} Newton steps", rest.status, rest.steps());
 
     let start = dynamics::InitialState::at_rest(rest.q);
     // Of the run in the spec, a line per half second.
-    let settings = dynamics::Settings { output: 0.5, ..dynamics::Settings::of(crane.description()) };
+    let settings = dynamics::Settings { output: 0.5, ..dynamics::Settings::from_description(crane.description()) };
     println!("{:>5}  {:>8}  {:>8}  {:>11}", "t [s]", "x [m]", "z [m]", "drive [N m]");
-    dynamics::Simulation::of(&crane, start, &settings).observe(|sample| {
+    dynamics::Simulation::new(&crane, start, &settings).observe(|sample| {
         let q = SVector::<f64, N>::from_column_slice(sample.q);
         let v = SVector::<f64, N>::from_column_slice(sample.v);
         let mut hook = [Vector3::zeros()];

@@ -4,8 +4,8 @@
 //! transforms. The recursion that it checks works in the frames of the bodies, outward and back.
 
 use crane_codegen::chain::{
-    Attachment, Axis, BodyId, Cylinder, Inertia, Line, Load, LoadAxes, LoopJointKind, PadDirection, Pin, Section,
-    Sliding, Strain, Value,
+    Attachment, Axis, BodyId, Cylinder, Inertia, Load, LoadAxes, LoopJointKind, PadDirection, Pin, Section, Sliding,
+    Strain, StrainLine, Value,
 };
 use crane_live::LiveCrane;
 use crane_model::dyn_crane::DynCrane;
@@ -248,7 +248,7 @@ fn connectors(crane: &LiveCrane, motion: &Motion, transforms: &[Matrix4<f64>]) -
             let up = force_at(point_of(crane, point, transforms), tension.force * Vector3::z());
             forces.extend(point.body.map(|body| (body.0, up)));
         }
-        let Some(Line { points, falls }) = connector.strain.line() else { continue };
+        let Some(StrainLine { points, falls }) = connector.strain.line() else { continue };
         for (index, ends) in points.windows(2).enumerate() {
             let [one, other] = [&ends[0], &ends[1]].map(|end| point_of(crane, end, transforms));
             let parts = if index + 2 == points.len() { f64::from(*falls) } else { 1.0 };

@@ -132,7 +132,7 @@ fn split_boom(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     if ends_of_halves.len() != ends.len() || !ends.iter().zip(&ends_of_halves).all(same) {
         return None;
     }
-    Some(Second::of(&second).with_other_links().named(if tapered {
+    Some(Second::new(&second).with_other_links().named(if tapered {
         without_stresses_and_boom_elements
     } else {
         without_boom_elements
@@ -222,7 +222,7 @@ fn boom_one_by_one(tree: &Tree, _: &mut Rng) -> Option<Second> {
     }
     // Elements that are given one by one have no sections, so no stress limits loads.
     let without = &[CAUTIONS, LOADS];
-    Some(Second { without, ..Second::of(&second).named(|name| (!name.contains("stress")).then(|| name.to_owned())) })
+    Some(Second { without, ..Second::new(&second).named(|name| (!name.contains("stress")).then(|| name.to_owned())) })
 }
 
 /// A beam without springs, and the body that it is.
@@ -244,7 +244,7 @@ fn rigid_boom_as_body(tree: &Tree, _: &mut Rng) -> Option<Second> {
         return None;
     }
     arm["placement"] = json!({"transform": {"translation": [BOOM, 0, 0]}});
-    let second = Second { first: Some(first), ..Second::of(&second) };
+    let second = Second { first: Some(first), ..Second::new(&second) };
     // The body of a rigid beam is called after its element. It has no sections, so no bending moments.
     let of_sections = |name: &str| name.contains("stress") || name.starts_with("bending by");
     Some(second.named(move |name| (!of_sections(name)).then(|| name.replace("boom_0", "boom"))))
@@ -277,7 +277,7 @@ fn other_names(tree: &Tree, _: &mut Rng) -> Option<Second> {
         }
     }
     // A point may be called as a link is.
-    Some(Second::of(&second).named(move |name| Some(renamed(name))))
+    Some(Second::new(&second).named(move |name| Some(renamed(name))))
 }
 
 /// A slope of the ground as the gravity that it means.
@@ -285,7 +285,7 @@ fn slope_as_gravity(tree: &Tree, _: &mut Rng) -> Option<Second> {
     tree.get("slope")?;
     let mut second = tree.clone();
     set_gravity(&mut second, &gravity(tree));
-    Some(Second::of(&second).with_cautions())
+    Some(Second::new(&second).with_cautions())
 }
 
 /// Positions in a frame that is turned by 90° about x.
@@ -351,7 +351,7 @@ fn planes_exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
     });
     // What a groove of the boom exerts is in the axes of the boom.
     let same = |name: &str| (!name.starts_with("groove_force")).then(|| name.replace("boom_psi", "boom_theta"));
-    Some(Second::of(&second).named(move |name| without_boom_elements(&same(name)?)))
+    Some(Second::new(&second).named(move |name| without_boom_elements(&same(name)?)))
 }
 
 /// A spec that extends one with other numbers.
@@ -379,7 +379,7 @@ fn overlay(tree: &Tree, _: &mut Rng) -> Option<Second> {
     }
     base["name"] = json!("base");
     let text = changes.to_string();
-    Some(Second { source: source(&base).changed(&text), ..Second::of(tree) }.with_cautions())
+    Some(Second { source: source(&base).changed(&text), ..Second::new(tree) }.with_cautions())
 }
 
 /// Whether a number is a value of the live parameter that is the load, or what happens there.
@@ -397,12 +397,12 @@ fn parameters_written_in(tree: &Tree, _: &mut Rng) -> Option<Second> {
         }
     });
     let without_load = |name: &str| (!of_load(name)).then(|| name.to_owned());
-    Some(Second::of(&second).with_cautions().named(without_load))
+    Some(Second::new(&second).with_cautions().named(without_load))
 }
 
 /// Masses, stiffnesses and an angle become live parameters.
 pub(crate) fn numbers_as_parameters(tree: &Tree, _: &mut Rng) -> Option<Second> {
-    Some(Second::of(&with_parameters(tree)?.0).with_cautions())
+    Some(Second::new(&with_parameters(tree)?.0).with_cautions())
 }
 
 /// They become live parameters with other values, and are set to those of the first.
@@ -415,7 +415,7 @@ fn numbers_set(tree: &Tree, rng: &mut Rng) -> Option<Second> {
         set.push((name, written));
         *value = json!(written * (1.0 + 0.03 * rng.f64()));
     }
-    Some(Second { set, ..Second::of(&second).with_cautions() })
+    Some(Second { set, ..Second::new(&second).with_cautions() })
 }
 
 /// Inputs have other values, or follow a motion, and are set to the values of the first.
@@ -433,7 +433,7 @@ fn inputs_set(tree: &Tree, rng: &mut Rng) -> Option<Second> {
             input["motion"] = json!({"cubic": {"from": other, "to": value, "begin": 0.1, "duration": 0.2}});
         }
     }
-    (!set.is_empty()).then(|| Second { set, ..Second::of(&second).with_cautions() })
+    (!set.is_empty()).then(|| Second { set, ..Second::new(&second).with_cautions() })
 }
 
 /// Lists whose numbers of these names become live, wherever they stand.
@@ -533,7 +533,7 @@ fn degrees(tree: &Tree, _: &mut Rng) -> Option<Second> {
             });
         }
     }
-    Some(Second::of(&second).with_cautions())
+    Some(Second::new(&second).with_cautions())
 }
 
 fn other_order(tree: &Tree, rng: &mut Rng) -> Option<Second> {
@@ -543,7 +543,7 @@ fn other_order(tree: &Tree, rng: &mut Rng) -> Option<Second> {
             rng.shuffle(entries);
         }
     }
-    Some(Second::of(&second))
+    Some(Second::new(&second))
 }
 
 /// Half of the weight of the hook's load as a force at its centre of mass: the same at rest.
@@ -568,7 +568,7 @@ fn weight_as_force(tree: &Tree, _: &mut Rng) -> Option<Second> {
         (!of_inertia).then(|| name.to_owned())
     };
     let without = &[CAUTIONS, MODES, STEPS, LINEAR, MARGINS];
-    Some(Second { moves: false, without, ..Second::of(&second).named(same) })
+    Some(Second { moves: false, without, ..Second::new(&second).named(same) })
 }
 
 /// Forces of loads as wind, and wind as forces.
@@ -576,7 +576,7 @@ fn wind_as_force(tree: &Tree, rng: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
     let loads = second.get_mut("loads").and_then(Value::as_array_mut)?;
     let exchanged = loads.iter_mut().filter_map(|load| wind::exchange(load, rng).then_some(())).count();
-    (exchanged > 0).then(|| Second::of(&second))
+    (exchanged > 0).then(|| Second::new(&second))
 }
 
 /// The falls of a rope one by one: back and forth between its last sheave and its end.
@@ -592,7 +592,7 @@ fn falls_as_sheaves(tree: &Tree, _: &mut Rng) -> Option<Second> {
     }
     rope["to"] = points.pop()?;
     rope["over"] = json!(points);
-    Some(Second::of(&second).named(without_places_of_rope))
+    Some(Second::new(&second).named(without_places_of_rope))
 }
 
 /// A rope from `to` over its sheaves to `from`.
@@ -604,7 +604,7 @@ fn from_its_other_end(tree: &Tree, _: &mut Rng) -> Option<Second> {
     }
     [rope["from"], rope["to"]] = [rope["to"].clone(), rope["from"].clone()];
     rope["over"].as_array_mut()?.reverse();
-    Some(Second::of(&second))
+    Some(Second::new(&second))
 }
 
 /// Names without those of places at the rope's ends, which are sheaves in the other description.
@@ -640,7 +640,7 @@ fn rope_link_by_link(tree: &Tree, _: &mut Rng) -> Option<Second> {
         }
     }
     // Bodies of the rope are bodies of links with other names.
-    Some(Second::of(&second).with_other_links().named(|name| {
+    Some(Second::new(&second).with_other_links().named(|name| {
         let is_body = name.starts_with("rope_") && name.contains(' ');
         if is_body {
             None
@@ -666,7 +666,7 @@ fn held_by_loop(tree: &Tree, _: &mut Rng) -> Option<Second> {
     push(&mut second, "loop_joints", joint);
     // The factor by the stiffness alone is none of closed loops.
     let named = |name: &str| (name != "factor by the stiffness").then(|| name.to_owned());
-    Some(Second::of(&second).with_other_links().named(named))
+    Some(Second::new(&second).with_other_links().named(named))
 }
 
 /// What followed leads: `q_i = q_j/r − c/r`. The coupling's force is then that on what leads.
@@ -678,7 +678,7 @@ fn coupled_the_other_way(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let [follower, leader] = ["coordinate", "follows"].map(|key| coupling[key].clone());
     (coupling["coordinate"], coupling["follows"]) = (leader, follower);
     (coupling["ratio"], coupling["offset"]) = (json!(1.0 / ratio), json!(-offset / ratio));
-    Some(Second::of(&second).named(|name| (!name.contains("chains")).then(|| name.to_owned())))
+    Some(Second::new(&second).named(|name| (!name.contains("chains")).then(|| name.to_owned())))
 }
 
 /// The second arm before what the column carried first.
@@ -689,7 +689,7 @@ fn branches_exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let position = |name: &str| links.iter().position(|link| link["name"] == name);
     let (boom, jib, lamp) = (position("boom")?, position("jib")?, position("lamp")?);
     links[boom..lamp].rotate_left(jib - boom);
-    Some(Second::of(&second))
+    Some(Second::new(&second))
 }
 
 /// The placement of every other link belongs to a massless link before it.
@@ -709,7 +709,7 @@ fn massless_frames(tree: &Tree, _: &mut Rng) -> Option<Second> {
         links.push(link);
     }
     second["links"] = Value::Array(links);
-    Some(Second::of(&second).with_other_links())
+    Some(Second::new(&second).with_other_links())
 }
 
 /// Keys whose numbers are proportional to the unit of mass.
@@ -767,7 +767,7 @@ fn mass_unit(tree: &Tree, _: &mut Rng) -> Option<Second> {
         double(push);
     }
     let factor = |unit: &str| if ["N", "N m", "J", "W", "Pa", "kg"].contains(&unit) { HEAVIER } else { 1.0 };
-    Some(Second { factor: Box::new(factor), ..Second::of(&second) })
+    Some(Second { factor: Box::new(factor), ..Second::new(&second) })
 }
 
 fn heavier(tree: &mut Tree, within: &str) {
@@ -823,5 +823,5 @@ fn loops(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let mut second = tree.clone();
     second["loops"] = json!("always");
     entry(tree, "links", "name", "boom")?;
-    Some(Second::of(&second).with_cautions())
+    Some(Second::new(&second).with_cautions())
 }

@@ -52,7 +52,7 @@ pub fn check_events(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         tolerance: TOLERANCE[0],
         audit: true,
         most_steps: 60_000,
-        ..Settings::of(crane.description())
+        ..Settings::from_description(crane.description())
     };
     let rows = in_two_parts([&before, &after], time, &start.state, &settings)?;
     let table = match record(&crane, &start, &settings, &mut |_| ControlFlow::Continue(())) {
@@ -159,7 +159,7 @@ fn in_two_parts(
     let whole = |t: f64| (t / settings.output).round() * settings.output;
     let until = if (whole(time) - time).abs() < 1e-9 { settings.output } else { time };
     let of_first = Settings { duration: time, output: until.min(settings.output), ..*settings };
-    Simulation::of(before, start, &of_first).watch(&mut first).ok()?;
+    Simulation::new(before, start, &of_first).watch(&mut first).ok()?;
     let mut end = first.end;
     // Results before the event, at the interval of the run.
     let on_grid = |t: f64| (whole(t) - t).abs() < 1e-9;
@@ -169,12 +169,12 @@ fn in_two_parts(
         let next = (time / settings.output).ceil() * settings.output;
         let mut nothing = Part { crane: after, keeps: &|_| false, rows: &mut rows, end: end.clone() };
         let to_result = Settings { duration: next - time, output: next - time, ..*settings };
-        Simulation::of(after, &end, &to_result).at_time(begin).watch(&mut nothing).ok()?;
+        Simulation::new(after, &end, &to_result).at_time(begin).watch(&mut nothing).ok()?;
         (begin, end) = (next, nothing.end);
     }
     let mut second = Part { crane: after, keeps: &|_| true, rows: &mut rows, end: end.clone() };
     let rest = Settings { duration: settings.duration - begin, ..*settings };
-    Simulation::of(after, &end, &rest).at_time(begin).watch(&mut second).ok()?;
+    Simulation::new(after, &end, &rest).at_time(begin).watch(&mut second).ok()?;
     Some(rows)
 }
 

@@ -46,7 +46,7 @@ pub fn check_fleets(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         audit: false,
         most_steps: MOST_STEPS,
         tolerance: TOLERANCE,
-        ..Settings::of(crane.description())
+        ..Settings::from_description(crane.description())
     };
     let execution = Execution { threads: 1, done: &|_, _| {}, cancelled: &|_| false };
     let run = |rows: &[Case]| run_ensemble(&crane, rows, &settings, &execution);

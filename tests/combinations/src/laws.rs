@@ -414,7 +414,8 @@ fn unbalanced(when: &str, bodies: Vec<(String, f64)>, tolerance: f64) -> Vec<Str
 fn energy_balance(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
     let description = crane.description();
     let start = Start { rests: true, ..Start::given(InitialState::at_rest(q.to_vec())) };
-    let settings = Settings { tolerance: 1e-7, most_steps: 60_000, audit: true, ..Settings::of(description) };
+    let settings =
+        Settings { tolerance: 1e-7, most_steps: 60_000, audit: true, ..Settings::from_description(description) };
     let table = match record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())) {
         Ok(recorded) => recorded.table,
         Err(failed) => return Some(Err(failed.to_string())),
@@ -461,7 +462,13 @@ fn rest_stays(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), St
         return None;
     }
     let start = Start { rests: true, ..Start::given(InitialState::at_rest(q.to_vec())) };
-    let settings = Settings { duration: 2.0, output: 0.5, tolerance: 1e-7, audit: false, ..Settings::of(description) };
+    let settings = Settings {
+        duration: 2.0,
+        output: 0.5,
+        tolerance: 1e-7,
+        audit: false,
+        ..Settings::from_description(description)
+    };
     let table = match record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())) {
         Ok(recorded) => recorded.table,
         Err(failed) => return Some(Err(failed.to_string())),
@@ -484,7 +491,7 @@ fn inputs_set_on_the_way(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<
     let numbers: Vec<f64> = crane.description().inputs.iter().map(|info| info.default).collect::<Option<_>>()?;
     let input = rng.usize(0..numbers.len().max(1));
     let value = numbers.get(input)? * (0.5 + rng.f64());
-    let own = Settings::of(crane.description());
+    let own = Settings::from_description(crane.description());
     let settings = Settings { tolerance: PART[1], audit: false, most_steps: 20_000, ..own };
     let proceed = &mut |_: f64| ControlFlow::Continue(());
     let mut start = Start::given(InitialState::at_rest(q.to_vec()));
@@ -605,7 +612,7 @@ fn damped_run_ends(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<Result
         tolerance: 1e-7,
         most_steps: 30_000,
         audit: false,
-        ..Settings::of(description)
+        ..Settings::from_description(description)
     };
     let settings = Settings { duration, output: duration, ..base };
     let table = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())).ok()?.table;
@@ -628,7 +635,7 @@ fn efforts_at_rest(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(
     let whole: &dyn DynCrane = crane;
     let held = whole.drive_efforts_at_rest(q);
     let start = Start { rests: true, ..Start::given(InitialState::at_rest(q.to_vec())) };
-    let settings = Settings { duration: 1e-6, output: 1e-6, audit: false, ..Settings::of(description) };
+    let settings = Settings { duration: 1e-6, output: 1e-6, audit: false, ..Settings::from_description(description) };
     let table = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())).ok()?.table;
     let size = held.iter().fold(0.0, |size: f64, effort| size.max(effort.abs()));
     for (drive, held) in description.drives.iter().zip(held) {

@@ -410,8 +410,12 @@ impl Found {
     fn results(&mut self, crane: &LiveCrane, q: &[f64], run: bool) -> Result<(), String> {
         let rest = vec![0.0; q.len()];
         let start = Start { rests: true, ..Start::given(InitialState { q: q.to_vec(), v: rest, x: Vec::new() }) };
-        let base =
-            Settings { tolerance: STEP, most_steps: MOST_STEPS, audit: false, ..Settings::of(crane.description()) };
+        let base = Settings {
+            tolerance: STEP,
+            most_steps: MOST_STEPS,
+            audit: false,
+            ..Settings::from_description(crane.description())
+        };
         // The first result of a run is the crane at rest, with the states of its oil and bristles.
         let settings = if run { base } else { Settings { duration: 1e-6, output: 1e-6, ..base } };
         let recorded = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(()));
@@ -428,7 +432,7 @@ impl Found {
         for (beam, range) in ranges(crane, &table) {
             self.add(RUN, format!("{beam} stress by cycles of stress"), "Pa", range);
         }
-        for DriveDuty { name, kind, rms, work, .. } in Duties::of(crane.description(), &table).drives {
+        for DriveDuty { name, kind, rms, work, .. } in Duties::new(crane.description(), &table).drives {
             self.add(RUN, format!("{name} mean effort"), kind.force_unit(), rms);
             self.add(RUN, format!("{name} work given"), "J", work);
         }

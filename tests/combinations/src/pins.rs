@@ -59,7 +59,7 @@ pub fn exchanged(tree: &Tree, _: &mut Rng) -> Option<Second> {
         let foot = cylinder["foot"].take();
         cylinder["foot"] = std::mem::replace(&mut cylinder["head"], foot);
     }
-    Some(Second::of(&second))
+    Some(Second::new(&second))
 }
 
 /// Every cylinder with a valve as forces along fixed axes at its pins; its drive is where the joint is, and has nothing to do.
@@ -134,6 +134,6 @@ pub fn as_loads(tree: &Tree, _: &mut Rng) -> Option<Second> {
         first: Some(first),
         moves: false,
         without: OF_FORCES,
-        ..Second::of(&second).with_other_links().named(same)
+        ..Second::new(&second).with_other_links().named(same)
     })
 }

@@ -59,7 +59,7 @@ pub fn check_run_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
         along.push(Along::Position(free[rng.usize(0..free.len())]));
         along.push(Along::Rate(free[rng.usize(0..free.len())]));
     }
-    let own = Settings::of(crane.description());
+    let own = Settings::from_description(crane.description());
     let settings = Settings {
         duration: RUN[0],
         output: RUN[1],

@@ -33,7 +33,7 @@ pub struct Second {
 impl Second {
     /// A spec whose numbers are all those of the first.
     #[must_use]
-    pub fn of(tree: &Tree) -> Self {
+    pub fn new(tree: &Tree) -> Self {
         Second {
             first: None,
             source: source(tree),

@@ -31,7 +31,7 @@ pub fn turned(tree: &Tree, _: &mut Rng) -> Option<Second> {
     }
     base["placement"] = json!({"transform": {"rotation": [{"z": TURN[0]}, {"y": TURN[1]}]}});
     turn_world(&mut second, &turn);
-    Some(Second::of(&second).with_cautions().named(without_places))
+    Some(Second::new(&second).with_cautions().named(without_places))
 }
 
 /// A crane turned about the vertical together with everything in the world. Feet of small rotations need a base that is not turned.
@@ -52,7 +52,7 @@ pub fn turned_about_the_vertical(tree: &Tree, _: &mut Rng) -> Option<Second> {
     let base = entry_mut(&mut second, "links", "name", "truck")?;
     base["placement"] = json!({"transform": {"rotation": {"z": "90 deg"}}});
     turn_world(&mut second, &quarter);
-    Some(Second::of(&second).with_cautions().named(without_places))
+    Some(Second::new(&second).with_cautions().named(without_places))
 }
 
 /// Turns everything in the world that a crane meets.
@@ -124,7 +124,7 @@ pub fn mirrored(tree: &Tree, _: &mut Rng) -> Option<Second> {
             }
         }
     }
-    Some(Second { signs: true, ..Second::of(&second) })
+    Some(Second { signs: true, ..Second::new(&second) })
 }
 
 /// Whether a coordinate changes its sign.

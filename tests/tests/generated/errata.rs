@@ -185,7 +185,7 @@ fn eqs_11_14_15_with_one_spring_too_many_are_too_soft() {
 fn eq_14_with_positions_in_the_dissipation_dissipates_at_rest() {
     let crane = Interpreted::new(workspace::chain("eight_link_flexible"));
     let state = crane_tests::quantities::State { t: 100.0, ..crane.equilibrium() };
-    let elements = crane.chain.of(Group::Elements).iter();
+    let elements = crane.chain.forces_of_group(Group::Elements).iter();
     let damper = |force: &Force| Some((force.coordinate()?.0, force.spring()?.damping.at(&[])));
     let printed: f64 = elements.filter_map(damper).map(|(j, damping)| damping * state.q[j].powi(2)).sum();
     let mut at_rest = state.clone();

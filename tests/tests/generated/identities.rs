@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use crane_codegen::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Cut, Force, Line, LinePart, Step};
+use crane_codegen::chain::{BodyId, Chain, CoordinateId, CoordinateKind, Cut, Force, LinePart, Step, StrainLine};
 use crane_codegen::program::{Argument, Inputs};
 use crane_model::nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 use crane_tests::dual::Dual;
@@ -235,7 +235,7 @@ fn wrenches_of_cylinders_and_connectors_follow_from_their_lengths() {
                 let elements = rows.chunks_exact(crane.size()).zip(wrenches.chunks_exact(6 * cuts.len()));
                 for (index, (row, wrenches)) in elements.enumerate() {
                     // Of other ropes, the wrenches are those of the parts between two bodies.
-                    let is_within = |line: &Line| line.parts().all(LinePart::joins_bodies);
+                    let is_within = |line: &StrainLine| line.parts().all(LinePart::joins_bodies);
                     let between = sign > 0.0 || chain.connectors()[index].strain.line().is_some_and(is_within);
                     // A linkage that does not close.
                     if !between || row.iter().any(|entry| entry.is_nan()) {

@@ -39,7 +39,7 @@ fn settings(crane: &dyn DynCrane, method: Method) -> Settings {
         step: 2e-4,
         tolerance: 1e-7,
         audit: true,
-        ..Settings::of(crane.description())
+        ..Settings::from_description(crane.description())
     }
 }
 
@@ -127,14 +127,14 @@ fn modes_and_statics_leave_prescribed_coordinates_out() {
         let mut at_start = q.clone();
         crane.prescribe(0.0, &mut at_start, &mut vec![0.0; q.len()]);
         assert_eq!(q, at_start, "the guess stands where the drives do");
-        let motions = SmallMotions::of(&*crane, &q);
+        let motions = SmallMotions::about_pose(&*crane, &q);
         assert_eq!(motions.mass.nrows(), q.len() - prescribed.len());
         assert!(prescribed.iter().all(|j| !motions.unknowns.contains(j)));
         for mode in crane_model::modes::undamped(&motions).expect("modes") {
             assert_eq!(mode.shape.len(), q.len());
             assert!(prescribed.iter().all(|j| mode.shape[*j] == 0.0 && !mode.dominating.contains(j)));
         }
-        let found = Problem::of(&*crane).at_time(0.8).from(&q).solve();
+        let found = Problem::new(&*crane).at_time(0.8).from(&q).solve();
         let mut moved = found.q.clone();
         crane.prescribe(0.8, &mut moved, &mut vec![0.0; q.len()]);
         assert_eq!(found.q, moved, "{}: {found}", crane.description().name);

@@ -27,7 +27,7 @@ fn statistics_of_runs_are_unchanged() {
     for (name, method, recorded) in RECORDED {
         let crane = cranes.iter().find(|crane| crane.description().name == name).expect("a shipped crane");
         let rest = crane.equilibrium(&statics::Settings::default());
-        let settings = Settings { method, audit: true, ..Settings::of(crane.description()) };
+        let settings = Settings { method, audit: true, ..Settings::from_description(crane.description()) };
         let run = crane.simulate(&InitialState::at_rest(rest.q), &settings, &mut |_| ControlFlow::Continue(()));
         let statistics = run.expect("a stable run").statistics;
         for (found, recorded) in [statistics.steps, statistics.evaluations].into_iter().zip(recorded) {

@@ -32,7 +32,7 @@ pub fn plan<const N: usize>(model: &impl CraneModel<N>) -> Plan {
     };
     let of = |(index, guess): (usize, &f64)| if is_passive(index) { guess + ASIDE } else { *guess };
     Plan {
-        start: statics::Problem::of(model).guess().iter().enumerate().map(of).collect(),
+        start: statics::Problem::new(model).guess().iter().enumerate().map(of).collect(),
         duration: 2.0,
         output: 0.05,
     }
@@ -50,14 +50,20 @@ pub fn run<const N: usize, C: CraneModel<N> + Default>(
 ) -> Result<Vec<f64>, String> {
     let crane = C::default();
     let Plan { start, duration, output } = plan(&crane);
-    let settings =
-        Settings { duration, output, method, step: accuracy, tolerance: accuracy, ..Settings::of(crane.description()) };
+    let settings = Settings {
+        duration,
+        output,
+        method,
+        step: accuracy,
+        tolerance: accuracy,
+        ..Settings::from_description(crane.description())
+    };
     let start = InitialState { q: start, v: vec![0.0; N], ..InitialState::default() };
     let (mut shortest, mut poses) = (f64::INFINITY, Poses(Vec::new()));
     for _ in 0..repeat {
         poses.0.clear();
         let begin = Instant::now();
-        Simulation::of(&crane, &start, &settings)
+        Simulation::new(&crane, &start, &settings)
             .at_time(BEGIN)
             .watch(&mut poses)
             .map_err(|stopped| stopped.to_string())?;

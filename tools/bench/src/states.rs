@@ -23,7 +23,7 @@ pub struct State<const N: usize> {
 /// Random states about the guess of the spec, before the drives begin to move: other libraries then see springs.
 #[must_use]
 pub fn near_guess<const N: usize>(model: &impl CraneModel<N>) -> Vec<State<N>> {
-    let (crane, guess) = (model.description(), statics::Problem::of(model).guess());
+    let (crane, guess) = (model.description(), statics::Problem::new(model).guess());
     let mut rng = Rng::with_seed(SEED);
     let mut symmetric = |scale: f64| scale * (2.0 * rng.f64() - 1.0);
     (0..COUNT)

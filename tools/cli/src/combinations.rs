@@ -65,7 +65,7 @@ pub fn strength(options: &Analysis, registry: &Registry, out: &mut dyn Write) ->
     let mut report = Report::default();
     verdicts(&mut report, &cases);
     let stable = cases.iter().filter(|case| case.equilibrium.is_stable());
-    let resting: Vec<Resting<'_>> = stable.map(Resting::of).collect();
+    let resting: Vec<Resting<'_>> = stable.map(Resting::new).collect();
     for Resting { case, .. } in &resting {
         let of_pose = cautions::of_pose(case.crane, &case.equilibrium.q, options.crane.limits.bend);
         for caution in of_pose.into_iter().chain(cautions::of_strength(case.crane)) {
@@ -92,7 +92,7 @@ struct Resting<'a> {
 }
 
 impl<'a> Resting<'a> {
-    fn of(case: &'a Case<'a>) -> Self {
+    fn new(case: &'a Case<'a>) -> Self {
         let (crane, q) = (case.crane, &case.equilibrium.q);
         let still = vec![0.0; q.len()];
         let instant = Instant::at_rest(crane, q);
@@ -165,7 +165,7 @@ fn worst(resting: &[Resting<'_>]) -> Grid {
             with(least).into(),
             Cell::shown(values[greatest], unit),
             with(greatest).into(),
-            DisplayUnit::of(unit).map_or(unit.into(), Cell::ShownUnit),
+            DisplayUnit::find(unit).map_or(unit.into(), Cell::ShownUnit),
         ]);
     }
     grid

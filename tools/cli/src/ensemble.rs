@@ -169,7 +169,7 @@ fn settings(
 ) -> Outcome<(dynamics::Settings, &'static str)> {
     let startable = |row: &Vec<f64>| {
         let crane = table.crane(base, row)?;
-        let start = Start::of(crane.as_ref())?;
+        let start = Start::new(crane.as_ref())?;
         Ok::<_, Problem>((crane, start))
     };
     let rests = |row: &Vec<f64>| startable(row).ok();

@@ -6,7 +6,7 @@ use std::{
 };
 
 use crane_codegen::program::Argument;
-use crane_live::rows::{Evaluation, Rows};
+use crane_live::rows::{Evaluation, ParameterRows};
 use crane_live::{FunctionId, LiveCrane, Refusal};
 use crane_model::{Description, Tree, dyn_crane::DynCrane};
 use nalgebra::Matrix4;
@@ -169,7 +169,7 @@ fn evaluate(quantity: Quantity, live: &LiveCrane, t: f64, q: &[f64], v: &[f64]) 
             let mut numbers = vec![0.0; evaluation.width()];
             // Those of the motion from this state.
             let a = if takes_accelerations(id) { crane.accelerations_at(t, q, v).as_slice().to_vec() } else { vec![] };
-            evaluation.run(&Rows { t: &[t], q, v, a: &a, ..Rows::default() }, 0..1, &mut numbers);
+            evaluation.run(&ParameterRows { t: &[t], q, v, a: &a, ..ParameterRows::default() }, 0..1, &mut numbers);
             (live.shape(id), numbers)
         }
         Quantity::Accelerations => list(crane.accelerations_at(t, q, v).as_slice()),

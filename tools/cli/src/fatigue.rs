@@ -6,7 +6,7 @@ use crane_model::{
     Description, DisplayUnit, SectionModuli,
     dyn_crane::DynCrane,
     dynamics::Method,
-    fatigue::{self, Cycle, Detail, Fatigue, LEAST_LIKELY_CATEGORY, Manoeuvre, Part},
+    fatigue::{self, Cycle, DamagePart, Detail, Fatigue, LEAST_LIKELY_CATEGORY, Manoeuvre},
     results::{Instant, Table, instants},
 };
 use crane_page::tables::{Case, Cell, Grid, Report, VALUE, add_events, caution_of_runs, verdicts};
@@ -30,7 +30,7 @@ const FINE: f64 = 0.05;
 
 /// Prints the damage of every beam.
 pub fn fatigue(options: &arguments::Fatigue, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let asked = Asked::read(options, registry)?;
+    let asked = Manoeuvres::read(options, registry)?;
     let cases = asked.cases();
     let mut report = Report::default();
     verdicts(&mut report, &cases);
@@ -45,7 +45,7 @@ pub fn fatigue(options: &arguments::Fatigue, registry: &Registry, out: &mut dyn 
 
 /// The same as a report without the verdicts of statics.
 pub fn report(options: &arguments::Fatigue, registry: &Registry) -> Outcome<Report> {
-    let asked = Asked::read(options, registry)?;
+    let asked = Manoeuvres::read(options, registry)?;
     for case in asked.cases() {
         case.stable()?;
     }
@@ -63,9 +63,9 @@ struct Repeated {
 }
 
 /// All manoeuvres; at least one.
-struct Asked(Vec<Repeated>);
+struct Manoeuvres(Vec<Repeated>);
 
-impl Asked {
+impl Manoeuvres {
     fn read(options: &arguments::Fatigue, registry: &Registry) -> Outcome<Self> {
         let choice = &options.analysis.crane;
         let first = Repeated {
@@ -134,7 +134,7 @@ impl Repeated {
 }
 
 /// Runs all manoeuvres, and adds what they do.
-fn add(report: &mut Report, options: &arguments::Fatigue, asked: &Asked) -> Outcome<()> {
+fn add(report: &mut Report, options: &arguments::Fatigue, asked: &Manoeuvres) -> Outcome<()> {
     let description = asked.0[0].crane.description();
     let categories = Categories::read(options, description)?;
     let mut runs = Vec::new();
@@ -159,7 +159,7 @@ fn add(report: &mut Report, options: &arguments::Fatigue, asked: &Asked) -> Outc
         .collect();
     let moduli: Vec<Vec<SectionModuli>> = asked.0.iter().map(|repeated| repeated.crane.section_moduli_at()).collect();
     let subject =
-        Subject { description, asked, histories: &histories, moduli: &moduli, options, categories: &categories };
+        FatigueSubject { description, asked, histories: &histories, moduli: &moduli, options, categories: &categories };
     let found = subject.of_every(1);
     let Some(worst) = greatest(&found) else {
         return Err(Problem::failed(
@@ -254,9 +254,9 @@ impl Categories {
 }
 
 /// What is reported about.
-struct Subject<'a> {
+struct FatigueSubject<'a> {
     description: &'a Description,
-    asked: &'a Asked,
+    asked: &'a Manoeuvres,
     /// By manoeuvre.
     histories: &'a [Vec<Instant>],
     /// By manoeuvre.
@@ -265,7 +265,7 @@ struct Subject<'a> {
     categories: &'a Categories,
 }
 
-impl Subject<'_> {
+impl FatigueSubject<'_> {
     /// What every n-th of the results says.
     fn of_every(&self, n: usize) -> Vec<Fatigue> {
         let all = self.asked.0.iter().zip(self.histories).zip(self.moduli);
@@ -474,7 +474,7 @@ fn ends(history: &[f64]) -> [f64; 2] {
 
 /// Whether the stress changes more from one manoeuvre to another than within them.
 fn changes(report: &mut Report, worst: &Fatigue) {
-    let all = worst.parts.iter().map(|part: &Part| ends(&part.history));
+    let all = worst.parts.iter().map(|part: &DamagePart| ends(&part.history));
     let [least, greatest] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], [low, high]| {
         [least.min(low), greatest.max(high)]
     });

@@ -22,12 +22,12 @@ use crate::{
 
 /// A shared library and the system that it is for.
 struct Library {
-    system: &'static System,
+    system: &'static Platform,
     content: Cow<'static, [u8]>,
 }
 
 /// A system by the ending of its shared libraries; cranes are for computers of 64 bits.
-struct System {
+struct Platform {
     suffix: &'static str,
     /// Its name in FMI 2.0.
     with_bits: &'static str,
@@ -35,13 +35,13 @@ struct System {
     name: &'static str,
 }
 
-const SYSTEMS: [System; 3] = [
-    System { suffix: "so", with_bits: "linux64", name: "linux" },
-    System { suffix: "dll", with_bits: "win64", name: "windows" },
-    System { suffix: "dylib", with_bits: "darwin64", name: "darwin" },
+const SYSTEMS: [Platform; 3] = [
+    Platform { suffix: "so", with_bits: "linux64", name: "linux" },
+    Platform { suffix: "dll", with_bits: "win64", name: "windows" },
+    Platform { suffix: "dylib", with_bits: "darwin64", name: "darwin" },
 ];
 
-impl System {
+impl Platform {
     /// Its folder in the archive. In FMI 3.0 it names the processor, which is that of this program.
     fn folder(&self, version: Fmi) -> String {
         match version {

@@ -23,7 +23,7 @@ impl Timing {
     /// # Errors
     /// An option has a value that cannot be used.
     pub fn settings(&self, crane: &dyn DynCrane, start: &Start, default: Method) -> Outcome<dynamics::Settings> {
-        let defaults = dynamics::Settings::of(crane.description());
+        let defaults = dynamics::Settings::from_description(crane.description());
         let method = self.method.unwrap_or(if self.step.is_some() { Method::Rk4 } else { default });
         let mut settings = dynamics::Settings { method, audit: true, ..defaults };
         let given = [("step", self.step.is_some(), false), ("tolerance", self.tolerance.is_some(), true)];

@@ -37,7 +37,7 @@ const STEADY: f64 = 1e-3;
 const DRIFT: f64 = 1e-3;
 
 /// The motion about which the crane is linearised.
-struct Motion {
+struct MotionAbout {
     /// What it is, in words.
     about: &'static str,
     t: f64,
@@ -166,7 +166,7 @@ fn drift_value(description: &Description, model: &LinearModel, drift: &Drift) ->
 }
 
 /// The motion in a row of results, with the accelerations that follow from it.
-fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<Motion> {
+fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<MotionAbout> {
     let found = row(file, crane.description(), at)?;
     let (mut q, mut v) = (crane.guess(), vec![0.0; crane.size()]);
     let states = force_states::columns(crane.description());
@@ -196,13 +196,14 @@ fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<Mot
         .then(|| format!("not steady: accelerations reach {greatest:.2e} m/s² or rad/s², so matrices and modes are valid only at this moment"));
     let efforts = vec![None; q.len()];
     let cautions = cautions.into_iter().collect();
-    Ok(Motion { about: "a moment of a run", t, q, v, a, x, steady: false, efforts, cautions })
+    Ok(MotionAbout { about: "a moment of a run", t, q, v, a, x, steady: false, efforts, cautions })
 }
 
 /// The pose at rest of a crane with loops, valves or joints that stick.
-fn of_rest(crane: &dyn DynCrane, t: f64) -> Outcome<Motion> {
+fn of_rest(crane: &dyn DynCrane, t: f64) -> Outcome<MotionAbout> {
     let settings = statics::Settings::default();
-    let rest = statics::Problem::of(crane).at_time(t).from(&crane.equilibrium(&settings).q).settings(&settings).solve();
+    let rest =
+        statics::Problem::new(crane).at_time(t).from(&crane.equilibrium(&settings).q).settings(&settings).solve();
     if !rest.rests() {
         let title = format!("{}: {}", crane.description().name, rest.status);
         return Err(Problem::failed(title, "`crane statics` says more, and what to change"));
@@ -212,7 +213,7 @@ fn of_rest(crane: &dyn DynCrane, t: f64) -> Outcome<Motion> {
         "valves are shut, as at rest: what a servo does about it is a matter of `crane margins` and `crane statics`"
             .to_owned()
     });
-    Ok(Motion {
+    Ok(MotionAbout {
         about: "a pose at rest",
         t,
         q: rest.q,
@@ -226,14 +227,14 @@ fn of_rest(crane: &dyn DynCrane, t: f64) -> Outcome<Motion> {
 }
 
 /// The steady motion with the drives as at a given time and some coordinates held.
-fn of_steady(live: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
+fn of_steady(live: &LiveCrane, options: &Linearise) -> Outcome<MotionAbout> {
     let crane: &dyn DynCrane = live;
     let t = options.time.unwrap_or(0.0);
     let held = read_held(&options.held, crane.description())?;
     let settings = statics::Settings::default();
     let mut rest = crane.equilibrium(&settings);
     if t != 0.0 {
-        rest = statics::Problem::of(crane).at_time(t).from(&rest.q).settings(&settings).solve();
+        rest = statics::Problem::new(crane).at_time(t).from(&rest.q).settings(&settings).solve();
     }
     let start = if rest.status == statics::Status::NotConverged { crane.guess() } else { rest.q };
     let found = steady(live, t, &start, &held).map_err(|refused| {
@@ -270,7 +271,7 @@ fn of_steady(live: &LiveCrane, options: &Linearise) -> Outcome<Motion> {
     }
     let about = if greatest > 0.0 { "a steady motion" } else { "a pose at rest" };
     let a = vec![0.0; start.len()];
-    Ok(Motion { about, t, a, q: found.q, v: found.v, x: Vec::new(), steady: true, efforts, cautions })
+    Ok(MotionAbout { about, t, a, q: found.q, v: found.v, x: Vec::new(), steady: true, efforts, cautions })
 }
 
 /// What `--hold` asks for.
@@ -303,7 +304,7 @@ fn read_held(given: &[String], description: &Description) -> Outcome<Vec<Held>> 
 }
 
 /// The efforts that hold the held coordinates.
-fn held(description: &Description, motion: &Motion) -> Grid {
+fn held(description: &Description, motion: &MotionAbout) -> Grid {
     let mut grid = Grid::new(
         "held",
         "Torques and forces that hold coordinates, in addition to drives",
@@ -333,7 +334,7 @@ fn modes_of(description: &Description, found: &[Mode]) -> Grid {
 }
 
 /// Pose, rates and accelerations.
-fn states(description: &Description, motion: &Motion) -> Grid {
+fn states(description: &Description, motion: &MotionAbout) -> Grid {
     let headings = ["coordinate", "position", "unit", "rate", "acceleration", "unit of rates"];
     let mut grid = Grid::new("motion", "Motion: pose, rates and accelerations", &headings);
     for (index, info) in description.coordinates.iter().enumerate() {
@@ -371,7 +372,7 @@ fn values(description: &Description, small: &SmallMotions, found: &[Mode]) -> Ve
 }
 
 /// The same as arrays; pose, rates and accelerations of all coordinates.
-fn arrays(motion: &Motion, small: Option<&SmallMotions>, model: &LinearModel, found: &[Mode]) -> Vec<Array> {
+fn arrays(motion: &MotionAbout, small: Option<&SmallMotions>, model: &LinearModel, found: &[Mode]) -> Vec<Array> {
     let list = |name: &'static str, data: Vec<f64>| Array { name: name.into(), shape: vec![data.len()], data };
     let shapes = |name: &'static str, part: fn(&Complex<f64>) -> f64| {
         let shape = vec![found.len(), model.coordinates().len()];

@@ -34,13 +34,13 @@ use crate::{
 };
 
 /// What is computed for a pose.
-struct Row {
+struct MarginRow {
     values: Vec<f64>,
     found: Result<Margins, String>,
 }
 
 /// The loop as asked for.
-struct Asked {
+struct MarginsRequest {
     acting: Acting,
     output: Output,
     of: Loop,
@@ -76,7 +76,7 @@ pub fn margins(options: &arguments::Margins, registry: &Registry, out: &mut dyn 
     Ok(())
 }
 
-fn ask(options: &arguments::Margins, crane: &LiveCrane) -> Outcome<Asked> {
+fn ask(options: &arguments::Margins, crane: &LiveCrane) -> Outcome<MarginsRequest> {
     let description = crane.description();
     let unknown = |name: &str, what: &str, known: &[String]| {
         let guess = nearest(name, known.iter().map(String::as_str));
@@ -108,11 +108,16 @@ fn ask(options: &arguments::Margins, crane: &LiveCrane) -> Outcome<Asked> {
     if let Some((name, value, needed)) = of.mistake() {
         return Err(Problem::usage(format!("`--{name} {value:e}` is out of range"), format!("write {needed}")));
     }
-    Ok(Asked { acting, output, of, least: options.least })
+    Ok(MarginsRequest { acting, output, of, least: options.least })
 }
 
 /// The rows of all poses, on several threads.
-fn rows(asked: &Asked, axes: &Axes, crane: &LiveCrane, threads: Option<NonZeroUsize>) -> Outcome<Vec<Row>> {
+fn rows(
+    asked: &MarginsRequest,
+    axes: &Axes,
+    crane: &LiveCrane,
+    threads: Option<NonZeroUsize>,
+) -> Outcome<Vec<MarginRow>> {
     let threads = threads.map_or_else(thread::available_parallelism, Ok).map_or(1, NonZeroUsize::get);
     let description = crane.description();
     let settings: Vec<Vec<(usize, f64)>> =
@@ -126,7 +131,7 @@ fn rows(asked: &Asked, axes: &Axes, crane: &LiveCrane, threads: Option<NonZeroUs
         loop {
             let pose = next.fetch_add(1, Ordering::Relaxed);
             let Some(values) = settings.get(pose) else { break };
-            let row = Row { values: axes.values(pose), found: of_pose(asked, crane, values) };
+            let row = MarginRow { values: axes.values(pose), found: of_pose(asked, crane, values) };
             found.lock().unwrap_or_else(PoisonError::into_inner).push((pose, row));
             bar.inc(1);
         }
@@ -160,7 +165,7 @@ fn check(crane: &LiveCrane, values: &[(usize, f64)]) -> Outcome<()> {
 }
 
 /// The margins in a pose.
-fn of_pose(asked: &Asked, crane: &LiveCrane, values: &[(usize, f64)]) -> Result<Margins, String> {
+fn of_pose(asked: &MarginsRequest, crane: &LiveCrane, values: &[(usize, f64)]) -> Result<Margins, String> {
     let mut crane = crane.clone();
     let parameters = with(&crane, values);
     DynCrane::set_parameters(&mut crane, &parameters).map_err(|refused| refused.to_string())?;
@@ -177,7 +182,7 @@ fn of_pose(asked: &Asked, crane: &LiveCrane, values: &[(usize, f64)]) -> Result<
     margins::margins(&plant, &asked.of).map_err(|none| none.to_string())
 }
 
-impl Asked {
+impl MarginsRequest {
     /// Whether a loop is unstable or its phase margin is below what it should be.
     fn falls_short(&self, found: &Margins) -> bool {
         !found.stable || found.phase.is_some_and(|(phase, _)| phase.abs() < self.least)
@@ -187,7 +192,7 @@ impl Asked {
 /// A margin of a loop.
 type Least = fn(&Margins) -> Option<f64>;
 
-fn facts(report: &mut Report, asked: &Asked, description: &Description, rows: &[Row]) {
+fn facts(report: &mut Report, asked: &MarginsRequest, description: &Description, rows: &[MarginRow]) {
     let [on, measured] = [asked.acting.column(description), asked.output.column.clone()];
     let found = || rows.iter().filter_map(|row| row.found.as_ref().ok());
     let (count, computed) = (rows.len(), found().count());
@@ -241,7 +246,7 @@ fn facts(report: &mut Report, asked: &Asked, description: &Description, rows: &[
 }
 
 /// The rows as a table.
-fn table(axes: &Axes, description: &Description, rows: &[Row]) -> Grid {
+fn table(axes: &Axes, description: &Description, rows: &[MarginRow]) -> Grid {
     let of_axes: Vec<(String, String, f64)> = axes.0.iter().map(|axis| shown(axis, description)).collect();
     let named = |(name, unit, _): &(String, String, f64)| {
         if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") }
@@ -293,7 +298,14 @@ fn table(axes: &Axes, description: &Description, rows: &[Row]) -> Grid {
 }
 
 /// Writes the table, or a map of the phase margin.
-fn write(file: &Path, grid: &Grid, axes: &Axes, asked: &Asked, description: &Description, rows: &[Row]) -> Outcome<()> {
+fn write(
+    file: &Path,
+    grid: &Grid,
+    axes: &Axes,
+    asked: &MarginsRequest,
+    description: &Description,
+    rows: &[MarginRow],
+) -> Outcome<()> {
     if files::ending(file, &ENDINGS)? == "csv" {
         let (header, fields) = grid.fields();
         return files::write_fields(file, header, fields);

@@ -42,7 +42,7 @@ impl OtherMesh {
     ///
     /// Errors fall with the square of the number of sections, so that with r times as many, `x_{rn} − x_n = (1 − 1/r²) (x − x_n)`, and with r times
     /// fewer, `x_n − x_{n/r} = (r² − 1) (x − x_n)`. Three quarters of `x − x_n` show with twice as many.
-    fn of(crane: &dyn DynCrane, registry: &Registry) -> Result<Self, &'static str> {
+    fn new(crane: &dyn DynCrane, registry: &Registry) -> Result<Self, &'static str> {
         const NOT_MADE: &str = "the crane with other sections cannot be made";
         let description = crane.description();
         // What the crane has, which is more than what is written where more acts on a beam.
@@ -84,7 +84,7 @@ impl OtherMesh {
 /// # Errors
 /// The modes of one of the cranes cannot be computed.
 pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>> {
-    let Ok(mesh) = OtherMesh::of(case.crane, registry) else { return Ok(None) };
+    let Ok(mesh) = OtherMesh::new(case.crane, registry) else { return Ok(None) };
     let Ok(other) = mesh.case(case.label) else { return Ok(None) };
     let frequencies = |case: &Case<'_>| -> Outcome<Vec<Option<f64>>> {
         let modes = undamped(&case.crane.small_motions_at(&case.equilibrium.q))?;
@@ -124,7 +124,7 @@ pub fn changes_of_stress(
     if stress <= 0.0 {
         return None;
     }
-    Some(OtherMesh::of(case.crane, registry).and_then(|mesh| {
+    Some(OtherMesh::new(case.crane, registry).and_then(|mesh| {
         let other = mesh.case(case.label)?;
         let description = other.crane.description();
         let finer = Instant::at_rest(other.crane, &other.equilibrium.q);
@@ -191,7 +191,7 @@ pub fn changes_of_points(case: &Case<'_>, registry: &Registry) -> Option<Result<
     let own = places(case);
     let bends = case.crane.description().coordinates.iter().any(|coordinate| coordinate.role.is_element());
     (bends && !own.is_empty() && case.equilibrium.is_stable()).then(|| {
-        let mesh = OtherMesh::of(case.crane, registry)?;
+        let mesh = OtherMesh::new(case.crane, registry)?;
         let other = places(&mesh.case(case.label)?);
         Ok(own.iter().zip(&other).map(|(own, other)| mesh.share.abs() * (other - own).norm()).collect())
     })

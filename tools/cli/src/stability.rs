@@ -26,7 +26,7 @@ pub fn stability(options: &Stability, registry: &Registry, out: &mut dyn Write) 
     let crane = options.analysis.crane.open(registry)?;
     let crane = crane.as_ref();
     let description = crane.description();
-    let start = Start::of(crane)?;
+    let start = Start::new(crane)?;
     let poses = manoeuvre(crane, &start, options.along)?;
     let modes = poses.first().map_or(&[][..], |pose| &pose.modes);
 

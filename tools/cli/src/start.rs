@@ -39,7 +39,7 @@ pub enum Variable {
 
 impl Variable {
     /// The variable that a column of results contains.
-    fn of(name: &str, description: &Description) -> Option<Self> {
+    fn find(name: &str, description: &Description) -> Option<Self> {
         let index_of = |name: &str| description.coordinates.iter().position(|coordinate| coordinate.name == name);
         let rate = || name.strip_suffix(RATE).and_then(index_of).map(Self::Rate);
         let force_state =
@@ -52,7 +52,7 @@ impl Variable {
     /// # Errors
     /// The crane has no such coordinate.
     pub fn named(name: &str, description: &Description) -> Outcome<Self> {
-        Self::of(name, description).ok_or_else(|| unknown(name, description))
+        Self::find(name, description).ok_or_else(|| unknown(name, description))
     }
 
     /// Adds it to what is given.
@@ -96,11 +96,11 @@ impl Timing {
     /// An option has a value that cannot be used.
     pub fn start(&self, crane: &dyn DynCrane, skip_unknown_names: bool) -> Outcome<Start> {
         if self.from.is_none() && self.start.is_empty() {
-            return Ok(Start::of(crane)?);
+            return Ok(Start::new(crane)?);
         }
         let description = crane.description();
         // Values that are not given are those of the equilibrium, if there is one.
-        let mut start = Start::of(crane).unwrap_or_else(|_| Start::guess(crane));
+        let mut start = Start::new(crane).unwrap_or_else(|_| Start::guess(crane));
         start.rests = false;
         let mut given = Given::default();
         if let Some(file) = &self.from {
@@ -149,7 +149,7 @@ impl Timing {
                     "write `--start coordinate=value`, such as `--start boom_psi=0.3` or `--start boom_psi_rate=-0.1`";
                 Problem::usage(format!("`--start {text}` has no value"), help)
             })?;
-            let variable = match Variable::of(name, description) {
+            let variable = match Variable::find(name, description) {
                 Some(variable) => variable,
                 None if skip_unknown_names => continue,
                 None => return Err(unknown(name, description)),
@@ -211,7 +211,7 @@ fn unknown(name: &str, description: &Description) -> Problem {
 }
 
 /// A row of the results of a run.
-pub struct Row {
+pub struct ResultRow {
     /// Its time, s, if the results have one.
     pub time: Option<f64>,
     /// Values of coordinates and rates.
@@ -227,7 +227,7 @@ const SAME_TIME: f64 = 1e-9;
 ///
 /// # Errors
 /// The file cannot be used, or has no row at that time.
-pub fn row(file: &Path, description: &Description, at: Option<f64>) -> Outcome<Row> {
+pub fn row(file: &Path, description: &Description, at: Option<f64>) -> Outcome<ResultRow> {
     let help = "give a CSV file of results written by `crane simulate` or `crane run`";
     let unreadable = |error: csv::Error| Problem::usage(format!("cannot use {}: {error}", file.display()), help);
     let mut csv = files::csv(file).map_err(unreadable)?;
@@ -256,7 +256,7 @@ pub fn row(file: &Path, description: &Description, at: Option<f64>) -> Outcome<R
     let mut values = Vec::new();
     for (header, text) in headers.iter().zip(&record) {
         let name = name_of(header);
-        let Some(variable) = Variable::of(&name, description) else { continue };
+        let Some(variable) = Variable::find(&name, description) else { continue };
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
         let number = number.ok_or_else(|| {
             let title = format!("{}: `{text}` is not a valid value for {name}", file.display());
@@ -268,5 +268,5 @@ pub fn row(file: &Path, description: &Description, at: Option<f64>) -> Outcome<R
         let title = format!("{} has no column for any coordinate of {}", file.display(), description.name);
         return Err(Problem::usage(title, help));
     }
-    Ok(Row { time, values })
+    Ok(ResultRow { time, values })
 }

@@ -53,7 +53,7 @@ pub fn chart(crane: &LiveCrane, wanted: &Wanted) -> Outcome<Value> {
     envelope
         .run(crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false })
         .map_err(|refused| refused.to_string())?;
-    let slewing = SlewAxis::of(crane as &dyn DynCrane);
+    let slewing = SlewAxis::new(crane as &dyn DynCrane);
     let row = |(pose, rating): (usize, &Option<Rating>)| {
         let rating = rating.as_ref()?;
         let place = point.and_then(|point| Some(*rating.loaded.as_ref()?.points.get(point)?));

@@ -66,7 +66,7 @@ impl Driving {
             duration: f64::INFINITY,
             most_steps: usize::MAX,
             audit: false,
-            ..Settings::of(crane.description())
+            ..Settings::from_description(crane.description())
         };
         let own = all[..live.parameters().len()].to_vec();
         let levers = vec![0.0; numbers.len()];

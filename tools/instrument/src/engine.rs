@@ -145,7 +145,7 @@ fn described(live: &LiveCrane, warnings: &Value) -> Value {
             }
             _ => None,
         };
-        live.chain().of(Group::Stops).iter().find_map(of_side)
+        live.chain().forces_of_group(Group::Stops).iter().find_map(of_side)
     };
     let drives: Vec<Value> = description
         .drives
@@ -199,7 +199,7 @@ fn rest(crane: &LiveCrane, as_written: bool) -> (Value, Equilibrium) {
         "drives": starts(crane),
     });
     if !found.is_stable() {
-        let failed = crane_model::runs::Reason::no_equilibrium(crane, found).of(&crane.description().name);
+        let failed = crane_model::runs::Reason::no_equilibrium(crane, found).for_crane(&crane.description().name);
         page["rest"]["why"] = json!(format!("{failed}; {}", failed.advice()));
     }
     (page, case.equilibrium)
@@ -207,7 +207,7 @@ fn rest(crane: &LiveCrane, as_written: bool) -> (Value, Equilibrium) {
 
 /// The run of the spec from its start, with all tables.
 fn run(crane: &LiveCrane, duration: Option<f64>) -> Outcome<Value> {
-    let own = Settings::of(crane.description());
+    let own = Settings::from_description(crane.description());
     let settings =
         Settings { method: Method::RECOMMENDED, audit: true, duration: duration.unwrap_or(own.duration), ..own };
     if !(settings.duration > 0.0 && settings.duration <= Settings::TIMES.1)
@@ -216,7 +216,7 @@ fn run(crane: &LiveCrane, duration: Option<f64>) -> Outcome<Value> {
         return Err(format!("a run of {} s: choose a time above 0 with at most a million results", settings.duration));
     }
     let told = |failed: crane_model::runs::Failed| format!("{failed}; {}", failed.advice());
-    let start = Start::of(crane).map_err(told)?;
+    let start = Start::new(crane).map_err(told)?;
     let recorded =
         record_checked(crane, &start, &settings, (false, BEND), &mut |_| ControlFlow::Continue(())).map_err(told)?;
     let case = Case::new(VALUE, crane as &dyn DynCrane);

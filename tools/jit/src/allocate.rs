@@ -2,7 +2,7 @@
 //! next use is furthest gives its own up (L. A. Belady, *A study of replacement algorithms for a virtual-storage computer*, IBM
 //! Systems Journal 5, 1966). A node that is in the frame already gives up first: that costs no store.
 
-use crate::instruction::{Instruction, Operand, Place, Register};
+use crate::instruction::{Instruction, Location, Operand, Register};
 use crate::operations::{Action, Kind, Node, Operation, Operations, index};
 use crate::places::{Pause, Places};
 use crate::roll::{Loop, roll};
@@ -18,7 +18,7 @@ pub struct Processor {
 
 /// The code between two pauses.
 #[derive(Debug, Default)]
-pub struct Part {
+pub struct CodePart {
     /// Its instructions.
     pub instructions: Vec<Instruction>,
     /// What follows it.
@@ -34,14 +34,14 @@ const SOON: u32 = 40;
 #[derive(Debug)]
 pub struct Allocated {
     /// Its parts.
-    pub parts: Vec<Part>,
+    pub parts: Vec<CodePart>,
     /// Places of numbers in the frame besides the given values.
     pub numbers: Vec<(usize, f64)>,
 }
 
 /// Registers and places for a line.
 pub fn allocate(mut operations: Operations, processor: Processor) -> Allocated {
-    let (mut places, pauses) = Places::of(&operations);
+    let (mut places, pauses) = Places::assign(&operations);
     let loops = roll(&mut operations, &mut places);
     places.open(operations.nodes);
     let operations = &operations;
@@ -83,7 +83,7 @@ pub fn allocate(mut operations: Operations, processor: Processor) -> Allocated {
                     allocation.used(*node, Some(*after));
                 }
                 allocation.empty();
-                parts.push(Part { instructions: std::mem::take(&mut allocation.instructions), pause });
+                parts.push(CodePart { instructions: std::mem::take(&mut allocation.instructions), pause });
             }
             Action::Loop(of, reads) => {
                 allocation.repeat(at, &loops[*of], reads);
@@ -94,7 +94,7 @@ pub fn allocate(mut operations: Operations, processor: Processor) -> Allocated {
         }
         allocation.release();
     }
-    parts.push(Part { instructions: allocation.instructions, pause: None });
+    parts.push(CodePart { instructions: allocation.instructions, pause: None });
     let place = |node: Node| allocation.places.get(node).unwrap_or_default() as usize;
     let numbers = operations.numbers.iter().map(|(node, number)| (place(*node), *number));
     let numbers = numbers.chain(loops.iter().flat_map(|own| own.numbers.iter().copied())).collect();
@@ -102,8 +102,8 @@ pub fn allocate(mut operations: Operations, processor: Processor) -> Allocated {
 }
 
 /// A place that does not move. One that is too far away is as far as possible, where `memory` refuses it.
-fn fixed(at: u32) -> Place {
-    Place { at: i32::try_from(at).unwrap_or(i32::MAX), step: 0 }
+fn fixed(at: u32) -> Location {
+    Location { at: i32::try_from(at).unwrap_or(i32::MAX), step: 0 }
 }
 
 /// Registers during a line.
@@ -199,7 +199,7 @@ impl<'a> Allocation<'a> {
         register
     }
 
-    fn place(&mut self, node: Node) -> Place {
+    fn place(&mut self, node: Node) -> Location {
         let moving = self.moving.and_then(|(own, _)| own.moving.get(&node));
         moving.copied().unwrap_or_else(|| fixed(self.places.give(node)))
     }

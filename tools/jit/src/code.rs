@@ -1,7 +1,7 @@
 //! A line as machine code.
 
 use crate::allocate::{Allocated, Processor, allocate};
-use crate::line::{Lanes, Line, Rounding, Width};
+use crate::line::{Lanes, Rounding, StraightLine, Width};
 use crate::memory::Functions;
 use crate::operations::Operations;
 use crate::places::Pause;
@@ -25,7 +25,7 @@ impl Code {
     /// # Panics
     /// If a step reads a value that is not made before it.
     #[must_use]
-    pub fn of(line: &Line, rounding: Rounding, width: Width) -> Option<Self> {
+    pub fn compile(line: &StraightLine, rounding: Rounding, width: Width) -> Option<Self> {
         processors(rounding, width).next().and_then(|processor| Self::on(line, rounding, width, processor))
     }
 
@@ -34,12 +34,17 @@ impl Code {
     /// # Panics
     /// As [`of`](Self::of).
     #[must_use]
-    pub fn each(line: &Line, rounding: Rounding, width: Width) -> Vec<Self> {
+    pub fn each(line: &StraightLine, rounding: Rounding, width: Width) -> Vec<Self> {
         processors(rounding, width).filter_map(|processor| Self::on(line, rounding, width, processor)).collect()
     }
 
-    fn on(line: &Line, rounding: Rounding, width: Width, (processor, lanes): (Processor, Lanes)) -> Option<Self> {
-        let Allocated { parts, numbers } = allocate(Operations::of(line, rounding), processor);
+    fn on(
+        line: &StraightLine,
+        rounding: Rounding,
+        width: Width,
+        (processor, lanes): (Processor, Lanes),
+    ) -> Option<Self> {
+        let Allocated { parts, numbers } = allocate(Operations::new(line, rounding), processor);
         let functions = parts.iter().map(|part| part.instructions.as_slice());
         let functions = Functions::new(functions, width, lanes).ok()?;
         Some(Self { functions, pauses: parts.iter().map(|part| part.pause).collect(), numbers })

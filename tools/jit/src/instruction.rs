@@ -7,7 +7,7 @@ pub type Register = u8;
 
 /// A place in the frame: its number in the first iteration of a loop, and by how much it moves from iteration to iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Place {
+pub struct Location {
     /// Its number.
     pub at: i32,
     /// Places per iteration; 0 outside of loops.
@@ -20,18 +20,18 @@ pub enum Operand {
     /// In a register.
     Register(Register),
     /// In the frame.
-    Memory(Place),
+    Memory(Location),
 }
 
 /// An instruction, or a few that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instruction {
     /// From the frame to a register.
-    Load(Register, Place),
+    Load(Register, Location),
     /// From a register to the frame.
-    Store(Register, Place),
+    Store(Register, Location),
     /// From a register to the results.
-    Result(Register, Place),
+    Result(Register, Location),
     /// From a register (the second) to another.
     Move(Register, Register),
     /// An operation. At most one operand is in memory: the last, or any of a fused one. Without three-operand forms, the result
@@ -54,7 +54,7 @@ pub enum Instruction {
 
 impl Instruction {
     /// The places of the frame that it reads or writes.
-    pub fn places(&self) -> impl Iterator<Item = Place> {
+    pub fn places(&self) -> impl Iterator<Item = Location> {
         let of = |operand: Operand| match operand {
             Operand::Memory(place) => Some(place),
             Operand::Register(_) => None,
@@ -78,7 +78,7 @@ impl Instruction {
             Instruction::End => *iterations = 1,
             _ => {}
         }
-        let end = |place: Place| {
+        let end = |place: Location| {
             let first = i64::from(place.at);
             let last = first + i64::from(place.step) * (i64::from(*iterations) - 1);
             assert!(first >= 0 && last >= 0, "a place before the frame");

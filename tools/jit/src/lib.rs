@@ -49,6 +49,6 @@ mod roll;
 mod vectors;
 
 pub use code::Code;
-pub use line::{Line, Rounding, Step, Value, Width, value};
+pub use line::{Rounding, Step, StraightLine, Value, Width, value};
 pub use places::Pause;
 pub use vectors::{Work, with_vectors};

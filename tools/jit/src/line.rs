@@ -11,7 +11,7 @@ pub fn value(number: usize) -> Value {
 
 /// A straight line of operations.
 #[derive(Clone, Debug, Default)]
-pub struct Line {
+pub struct StraightLine {
     /// The values that are given before a call, in the first places of the frame; `Some` for numbers that never change.
     pub given: Vec<Option<f64>>,
     /// The steps, in order.

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use crate::line::{Line, Rounding, Step, Value};
+use crate::line::{Rounding, Step, StraightLine, Value};
 
 /// Number of a node: first the given ones, then what operations and pauses make, and numbers that signs need.
 pub type Node = u32;
@@ -113,9 +113,9 @@ struct Signed(Node, bool);
 impl Operations {
     /// The operations of a line.
     #[must_use]
-    pub fn of(line: &Line, rounding: Rounding) -> Self {
+    pub fn new(line: &StraightLine, rounding: Rounding) -> Self {
         let given = |at: usize| Signed(index(at), false);
-        let mut writer = Writer {
+        let mut writer = OperationWriter {
             line,
             rounding,
             values: (0..line.given.len()).map(given).collect(),
@@ -146,8 +146,8 @@ impl Operations {
 }
 
 /// Operations under construction.
-struct Writer<'a> {
-    line: &'a Line,
+struct OperationWriter<'a> {
+    line: &'a StraightLine,
     rounding: Rounding,
     /// The node of every value.
     values: Vec<Signed>,
@@ -157,12 +157,12 @@ struct Writer<'a> {
     operations: Operations,
 }
 
-impl Writer<'_> {
+impl OperationWriter<'_> {
     fn write(&mut self, step: &Step) {
         let value = match step {
             Step::MulAdd(operands) => self.multiply_and_add(*operands),
             Step::Div([a, b]) => {
-                let [Signed(a, minus_a), Signed(b, minus_b)] = [self.of(*a), self.of(*b)];
+                let [Signed(a, minus_a), Signed(b, minus_b)] = [self.signed(*a), self.signed(*b)];
                 Signed(self.make(Kind::Quotient, [a, b, b]), minus_a != minus_b)
             }
             Step::Min([a, b]) => self.plain(Kind::Minimum, [*a, *b, *b]),
@@ -170,12 +170,12 @@ impl Writer<'_> {
             Step::Sqrt(a) => self.plain(Kind::Root, [*a, *a, *a]),
             Step::Select(operands) => self.plain(Kind::Choice, *operands),
             Step::Store { place, value } => {
-                let node = self.positive(self.of(*value));
+                let node = self.positive(self.signed(*value));
                 self.operations.actions.push(Action::Store(*place, node));
                 return;
             }
             Step::Pause { arguments, makes } => {
-                let arguments = arguments.iter().map(|value| self.positive(self.of(*value))).collect();
+                let arguments = arguments.iter().map(|value| self.positive(self.signed(*value))).collect();
                 let first = index(self.operations.nodes);
                 self.operations.actions.push(Action::Pause(arguments, first, *makes));
                 self.operations.nodes += makes;
@@ -186,7 +186,7 @@ impl Writer<'_> {
         self.values.push(value);
     }
 
-    fn of(&self, value: Value) -> Signed {
+    fn signed(&self, value: Value) -> Signed {
         self.values[value as usize]
     }
 
@@ -208,7 +208,7 @@ impl Writer<'_> {
 
     /// An operation of values with their signs.
     fn plain(&mut self, kind: Kind, operands: [Value; 3]) -> Signed {
-        let operands = operands.map(|value| self.positive(self.of(value)));
+        let operands = operands.map(|value| self.positive(self.signed(value)));
         Signed(self.make(kind, operands), false)
     }
 
@@ -241,16 +241,16 @@ impl Writer<'_> {
         let is_nothing = self.number(c).is_some_and(|number| number == 0.0 && number.is_sign_negative());
         let product = match unit {
             Some(unit) => {
-                let Signed(node, negative) = self.of(factor);
+                let Signed(node, negative) = self.signed(factor);
                 Signed(node, negative != (unit < 0.0))
             }
             None if is_nothing || self.rounding == Rounding::Separate => {
-                let [Signed(a, minus_a), Signed(b, minus_b)] = [self.of(a), self.of(b)];
+                let [Signed(a, minus_a), Signed(b, minus_b)] = [self.signed(a), self.signed(b)];
                 Signed(self.make(Kind::Product, [a, b, b]), minus_a != minus_b)
             }
             None => {
                 let [Signed(a, minus_a), Signed(b, minus_b), Signed(c, minus_c)] =
-                    [a, b, c].map(|value| self.of(value));
+                    [a, b, c].map(|value| self.signed(value));
                 let (signs, negative) = match (minus_a != minus_b, minus_c) {
                     (false, false) => (Signs::Plus, false),
                     (true, true) => (Signs::Plus, true),
@@ -260,7 +260,7 @@ impl Writer<'_> {
                 return Signed(self.make(Kind::Fused(signs), [a, b, c]), negative);
             }
         };
-        if is_nothing { product } else { self.add(product, self.of(c)) }
+        if is_nothing { product } else { self.add(product, self.signed(c)) }
     }
 
     fn add(&mut self, Signed(a, minus_a): Signed, Signed(b, minus_b): Signed) -> Signed {

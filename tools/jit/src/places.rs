@@ -33,7 +33,7 @@ pub struct Pause {
 
 impl Places {
     /// Places for the given values and all pauses of operations.
-    pub fn of(operations: &Operations) -> (Self, Vec<Pause>) {
+    pub fn assign(operations: &Operations) -> (Self, Vec<Pause>) {
         let given = operations.given.len();
         let mut places =
             Places { of: vec![None; operations.nodes], free: BinaryHeap::new(), reusable_from: 0, count: index(given) };

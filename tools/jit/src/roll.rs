@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use crate::instruction::Place;
+use crate::instruction::Location;
 use crate::operations::{Action, Node, Operation, Operations, index};
 use crate::places::Places;
 use crate::repeats::{Repeat, Source, repeats};
@@ -25,7 +25,7 @@ pub struct Loop {
     /// Whether others need what each of them makes.
     pub saved: Vec<bool>,
     /// Places of nodes that move from iteration to iteration.
-    pub moving: HashMap<Node, Place>,
+    pub moving: HashMap<Node, Location>,
     /// Nodes copied to further places before the loop.
     pub copies: Vec<(Node, u32)>,
     /// Numbers in the frame.
@@ -174,7 +174,7 @@ impl Rolling<'_> {
     }
 
     /// The place from which an iteration takes a value of the previous one.
-    fn carry(&mut self, of: usize, initial: Node, at: usize, own: &mut Loop) -> Place {
+    fn carry(&mut self, of: usize, initial: Node, at: usize, own: &mut Loop) -> Location {
         let Records { before, size, cells } = &self.records[of];
         let (first, step) = (before + index(cells[at].unwrap_or_default()), *size);
         self.claimed.insert(first, initial);
@@ -187,7 +187,7 @@ impl Rolling<'_> {
     }
 
     /// The place of nodes, one per iteration: where they are if that moves evenly, otherwise that of copies.
-    fn follow(&mut self, stream: &[Node], own: &mut Loop) -> Place {
+    fn follow(&mut self, stream: &[Node], own: &mut Loop) -> Location {
         let known: Vec<Option<i64>> = stream.iter().map(|node| self.places.get(*node).map(i64::from)).collect();
         let pair = known.windows(2).position(|pair| pair[0].is_some() && pair[1].is_some());
         let even = pair.and_then(|k| {
@@ -211,7 +211,7 @@ impl Rolling<'_> {
             self.claimed.insert(place, *node);
             self.places.set(*node, place);
         }
-        Place { at: first.cast_signed(), step }
+        Location { at: first.cast_signed(), step }
     }
 
     /// Whether a place is in a spare record and not in use.
@@ -226,7 +226,7 @@ impl Rolling<'_> {
     }
 
     /// Copies of nodes next to each other.
-    fn gather(&mut self, nodes: &[Node], own: &mut Loop) -> Place {
+    fn gather(&mut self, nodes: &[Node], own: &mut Loop) -> Location {
         let first = self.places.reserve(nodes.len());
         for (place, node) in (first..).zip(nodes) {
             if let Some(number) = self.operations.given.get(*node as usize).copied().flatten() {
@@ -290,6 +290,6 @@ impl Rolling<'_> {
     }
 }
 
-fn moving(first: u32, step: usize) -> Place {
-    Place { at: first.cast_signed(), step: index(step).cast_signed() }
+fn moving(first: u32, step: usize) -> Location {
+    Location { at: first.cast_signed(), step: index(step).cast_signed() }
 }

@@ -3,15 +3,19 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crane_jit::{Code, Line, Rounding, Step, Width};
+use crane_jit::{Code, Rounding, Step, StraightLine, Width};
 
 /// `x ← x y + x`, so often that a thread is interrupted in between.
 const STEPS: u32 = 2000;
 
-fn line(place: u32) -> Line {
+fn line(place: u32) -> StraightLine {
     let last = 2 + STEPS - 1;
     let steps = (0..STEPS).map(|at| Step::MulAdd([if at == 0 { 0 } else { at + 1 }, 1, 0]));
-    Line { given: vec![None; 2], steps: steps.chain([Step::Store { place, value: last }]).collect(), results: 1 }
+    StraightLine {
+        given: vec![None; 2],
+        steps: steps.chain([Step::Store { place, value: last }]).collect(),
+        results: 1,
+    }
 }
 
 fn expected(x: f64, y: f64) -> f64 {
@@ -20,7 +24,7 @@ fn expected(x: f64, y: f64) -> f64 {
 
 #[test]
 fn threads_share_code() {
-    let Some(code) = Code::of(&line(0), Rounding::Separate, Width::One) else { return };
+    let Some(code) = Code::compile(&line(0), Rounding::Separate, Width::One) else { return };
     let code = &code;
     std::thread::scope(|scope| {
         for thread in 0..8 {
@@ -42,7 +46,7 @@ fn threads_share_code() {
 #[test]
 fn slices_that_are_too_short_are_refused() {
     for width in [Width::One, Width::Eight] {
-        let Some(code) = Code::of(&line(0), Rounding::Separate, width) else { continue };
+        let Some(code) = Code::compile(&line(0), Rounding::Separate, width) else { continue };
         let numbers = width.numbers();
         let run = |places: usize, results: usize| {
             let (mut frame, mut results) = (vec![0.0; places], vec![0.0; results]);
@@ -60,7 +64,7 @@ fn slices_that_are_too_short_are_refused() {
 fn results_beyond_displacements_have_no_code() {
     for place in [1 << 20, 1 << 25, 1 << 28, 1 << 29, u32::MAX] {
         for width in [Width::One, Width::Eight] {
-            assert!(Code::of(&line(place), Rounding::Separate, width).is_none(), "{width:?}, {place}");
+            assert!(Code::compile(&line(place), Rounding::Separate, width).is_none(), "{width:?}, {place}");
         }
     }
 }

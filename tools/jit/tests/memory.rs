@@ -3,7 +3,7 @@
 
 #![cfg(target_os = "linux")]
 
-use crane_jit::{Code, Line, Rounding, Step, Width};
+use crane_jit::{Code, Rounding, Step, StraightLine, Width};
 
 /// Permissions of mappings without a file that may be executed.
 fn executable() -> Vec<String> {
@@ -15,15 +15,19 @@ fn executable() -> Vec<String> {
 }
 
 /// A line whose code takes several pages: nothing repeats in it.
-fn line() -> Line {
+fn line() -> StraightLine {
     let products = (0..3000).map(|at| Step::MulAdd([at + 1, 7919 * at % (at + 2), 0]));
-    Line { given: vec![None; 2], steps: products.chain([Step::Store { place: 0, value: 3001 }]).collect(), results: 1 }
+    StraightLine {
+        given: vec![None; 2],
+        steps: products.chain([Step::Store { place: 0, value: 3001 }]).collect(),
+        results: 1,
+    }
 }
 
 #[test]
 fn dropped_code_leaves_no_pages() {
     let before = executable().len();
-    let Some(first) = Code::of(&line(), Rounding::Separate, Width::One) else {
+    let Some(first) = Code::compile(&line(), Rounding::Separate, Width::One) else {
         println!("no code for this processor");
         return;
     };
@@ -34,7 +38,7 @@ fn dropped_code_leaves_no_pages() {
     assert!(now.iter().all(|permissions| !permissions.contains('w')), "{now:?}");
     drop(first);
     for _ in 0..100 {
-        drop(Code::of(&line(), Rounding::Separate, Width::One));
+        drop(Code::compile(&line(), Rounding::Separate, Width::One));
     }
     assert_eq!(executable().len(), before);
 }

@@ -1,6 +1,6 @@
 //! Random lines: machine code computes what each step says, to the bit, except for the sign of a zero.
 
-use crane_jit::{Code, Line, Rounding, Step, Value, Width};
+use crane_jit::{Code, Rounding, Step, StraightLine, Value, Width};
 use fastrand::Rng;
 
 /// Numbers of a place, at most.
@@ -13,15 +13,15 @@ fn paused(x: f64) -> f64 {
 }
 
 /// The given values of a lane.
-fn given(line: &Line, rng: &mut Rng) -> Vec<f64> {
+fn given(line: &StraightLine, rng: &mut Rng) -> Vec<f64> {
     line.given.iter().map(|number| number.unwrap_or_else(|| 4.0 * rng.f64() - 2.0)).collect()
 }
 
 /// A line of about `length` steps over `inputs` given values; operands are mostly recent, and numbers mostly of moderate size.
-fn line(rng: &mut Rng, inputs: usize, length: usize) -> Line {
+fn line(rng: &mut Rng, inputs: usize, length: usize) -> StraightLine {
     let numbers = [-1.0, 1.0, -0.0, 0.0, 0.5, -3.25];
     let given = numbers.into_iter().map(Some).chain((0..inputs).map(|_| None)).collect();
-    let mut line = Line { given, ..Line::default() };
+    let mut line = StraightLine { given, ..StraightLine::default() };
     let mut values = self::given(&line, rng);
     while line.steps.len() < length {
         let before = values.len();
@@ -54,7 +54,7 @@ enum Operand {
 }
 
 /// A line in which random steps repeat, some of them twice, on operands that correspond.
-fn repeating_line(rng: &mut Rng) -> Line {
+fn repeating_line(rng: &mut Rng) -> StraightLine {
     let mut line = line(rng, 400, 60);
     let given = line.given.len();
     let value = |at: usize| u32::try_from(at).unwrap();
@@ -171,14 +171,14 @@ fn apply(step: &Step, rounding: Rounding, values: &mut Vec<f64>, results: &mut [
 }
 
 /// What all steps say.
-fn evaluate(line: &Line, rounding: Rounding, given: &[f64]) -> Vec<f64> {
+fn evaluate(line: &StraightLine, rounding: Rounding, given: &[f64]) -> Vec<f64> {
     let (mut values, mut results) = (given.to_vec(), vec![f64::NAN; line.results]);
     line.steps.iter().for_each(|step| apply(step, rounding, &mut values, &mut results));
     results
 }
 
 /// The results of machine code, lane by lane.
-fn run(code: &Code, line: &Line, lanes: usize, given: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn run(code: &Code, line: &StraightLine, lanes: usize, given: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut frame = vec![0.0; code.places().max(line.given.len()) * lanes];
     for (place, number) in code.numbers() {
         frame[place * lanes..(place + 1) * lanes].fill(number);
@@ -208,7 +208,7 @@ fn assert_same(what: &str, computed: &[f64], expected: &[f64]) {
 }
 
 /// Compares machine code of random lines with what they say; returns the number of loops in it.
-fn compare(rounding: Rounding, width: Width, line: impl Fn(&mut Rng) -> Line) -> usize {
+fn compare(rounding: Rounding, width: Width, line: impl Fn(&mut Rng) -> StraightLine) -> usize {
     let lanes = width.numbers();
     let (mut compared, mut loops) = (0, 0);
     for seed in 0..LINES {
@@ -249,7 +249,7 @@ fn has_code(_: Rounding, width: Width) -> bool {
     cfg!(target_arch = "aarch64") && width == Width::One
 }
 
-fn any_line(rng: &mut Rng) -> Line {
+fn any_line(rng: &mut Rng) -> StraightLine {
     let (inputs, length) = (rng.usize(1..60), rng.usize(1..1500));
     line(rng, inputs, length)
 }
@@ -276,8 +276,8 @@ fn what_repeats_is_a_loop() {
 #[test]
 fn what_pauses_make_has_places_even_if_nothing_reads_it() {
     let pause = Step::Pause { arguments: vec![0], makes: 6 };
-    let line = Line { given: vec![None], steps: vec![pause, Step::Store { place: 0, value: 1 }], results: 1 };
-    let Some(code) = Code::of(&line, Rounding::Separate, Width::One) else { return };
+    let line = StraightLine { given: vec![None], steps: vec![pause, Step::Store { place: 0, value: 1 }], results: 1 };
+    let Some(code) = Code::compile(&line, Rounding::Separate, Width::One) else { return };
     let pause = code.pause(0).expect("the line pauses once");
     assert_eq!(pause.makes, 6);
     assert!(code.places() >= pause.values + pause.makes, "{} places, {pause:?}", code.places());

@@ -4,7 +4,7 @@
 #![cfg(target_os = "linux")]
 #![allow(unsafe_code)]
 
-use crane_jit::{Code, Line, Rounding, Step, Width};
+use crane_jit::{Code, Rounding, Step, StraightLine, Width};
 
 /// prctl(2), since Linux 6.3.
 const SET_MEMORY_DENY_WRITE_EXECUTE: libc::c_int = 65;
@@ -14,12 +14,12 @@ const REFUSE_EXECUTION: libc::c_ulong = 1;
 #[test]
 fn refused_memory_is_no_code() {
     let product = Step::MulAdd([0, 1, 2]);
-    let line = Line {
+    let line = StraightLine {
         given: vec![None, None, Some(-0.0)],
         steps: vec![product, Step::Store { place: 0, value: 3 }],
         results: 1,
     };
-    let has_code = || Code::of(&line, Rounding::Separate, Width::One).is_some();
+    let has_code = || Code::compile(&line, Rounding::Separate, Width::One).is_some();
     if !has_code() {
         println!("no code for this processor");
         return;

@@ -202,7 +202,7 @@ impl<T: Number> Arguments<'_, T> {
     }
 
     /// The numbers of an argument.
-    fn of(&self, argument: Argument) -> &[T] {
+    fn numbers(&self, argument: Argument) -> &[T] {
         match argument {
             Argument::Time => std::slice::from_ref(&self.t),
             Argument::Position => self.q,
@@ -223,7 +223,7 @@ impl<T: Number> Arguments<'_, T> {
 
     /// The numbers of an input; `None` if the argument is not given, which means zeros.
     fn given(&self, inputs: &Inputs) -> Option<&[T]> {
-        let (numbers, last) = (self.of(inputs.argument), inputs.first + inputs.count);
+        let (numbers, last) = (self.numbers(inputs.argument), inputs.first + inputs.count);
         assert!(
             numbers.is_empty() || numbers.len() >= last,
             "{:?} has {} numbers, not {last}",

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crane_jit::{Code as MachineCode, Line, Pause, Step, Value, Width, value};
+use crane_jit::{Code as MachineCode, Pause, Step, StraightLine, Value, Width, value};
 use crane_model::rt::lanes::f64x8;
 use crane_model::rt::sin_cos;
 
@@ -21,8 +21,8 @@ const CALLS: u32 = 500;
 pub fn is_slower_in_lanes() -> bool {
     static SLOWER: OnceLock<bool> = OnceLock::new();
     *SLOWER.get_or_init(|| {
-        let line = Line { given: vec![None], steps: vec![Step::Store { place: 0, value: 0 }], results: 1 };
-        let has = |width| MachineCode::of(&line, ROUNDING, width).is_some();
+        let line = StraightLine { given: vec![None], steps: vec![Step::Store { place: 0, value: 0 }], results: 1 };
+        let has = |width| MachineCode::compile(&line, ROUNDING, width).is_some();
         has(Width::One) && !has(Width::Eight)
     })
 }
@@ -53,7 +53,7 @@ impl Hot {
 
     /// The machine code, made now if it was not made before.
     pub fn get(&self, code: &Code, form: Form) -> Option<&Native> {
-        self.code.get_or_init(|| Native::of(code, form)).as_ref()
+        self.code.get_or_init(|| Native::new(code, form)).as_ref()
     }
 }
 
@@ -72,7 +72,7 @@ pub struct Native {
 }
 
 impl Native {
-    fn of(code: &Code, form: Form) -> Option<Self> {
+    fn new(code: &Code, form: Form) -> Option<Self> {
         let Instructions::Narrow(instructions) = &code.instructions else { return None };
         let (line, pauses) = line(code, instructions);
         let given = [code.fixed.len(), line.given.len()];
@@ -86,7 +86,13 @@ impl Native {
         };
         let numbers = line.given.iter().enumerate().skip(given[1]);
         let numbers = numbers.filter_map(|(place, number)| Some((place, (*number)?))).collect();
-        Some(Self { code: MachineCode::of(&line, ROUNDING, width)?, pauses, given, numbers, results: code.results })
+        Some(Self {
+            code: MachineCode::compile(&line, ROUNDING, width)?,
+            pauses,
+            given,
+            numbers,
+            results: code.results,
+        })
     }
 
     /// Bytes of machine code.
@@ -223,7 +229,7 @@ fn compute<T: Number>(kind: Kind, pause: Pause, frame: &mut [T]) {
 }
 
 /// Bytecode as a line, in which each value has its own number; and what its pauses compute.
-fn line(code: &Code, mut instructions: &[Instruction]) -> (Line, Vec<Kind>) {
+fn line(code: &Code, mut instructions: &[Instruction]) -> (StraightLine, Vec<Kind>) {
     let number = |fixed: &Fixed| match fixed {
         Fixed::Number(number) => Some(*number),
         Fixed::Parameter { .. } | Fixed::Stored { .. } => None,
@@ -232,8 +238,12 @@ fn line(code: &Code, mut instructions: &[Instruction]) -> (Line, Vec<Kind>) {
     let given: Vec<_> = code.fixed.iter().map(number).chain((0..inputs).map(|_| None)).collect();
     let mut of = vec![0; code.registers.max(given.len())];
     (0..given.len()).for_each(|at| of[at] = value(at));
-    let mut writer =
-        Writer { of, count: given.len(), pauses: vec![], line: Line { given, steps: vec![], results: code.results } };
+    let mut writer = CompiledFunction {
+        of,
+        count: given.len(),
+        pauses: vec![],
+        line: StraightLine { given, steps: vec![], results: code.results },
+    };
     let mut stores = code.stores.as_slice();
     for segment in &code.segments {
         let length = segment.length as usize;
@@ -256,16 +266,16 @@ fn line(code: &Code, mut instructions: &[Instruction]) -> (Line, Vec<Kind>) {
 }
 
 /// A line under construction.
-struct Writer {
+struct CompiledFunction {
     /// The value in each register.
     of: Vec<Value>,
     /// The number of values.
     count: usize,
     pauses: Vec<Kind>,
-    line: Line,
+    line: StraightLine,
 }
 
-impl Writer {
+impl CompiledFunction {
     fn write(&mut self, kind: Kind, instructions: &[Instruction]) {
         if matches!(kind, Kind::Angle | Kind::Stumpff | Kind::Exp) {
             self.pause(kind, instructions);

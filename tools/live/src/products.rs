@@ -25,7 +25,7 @@ use crate::rows::Evaluation;
 
 /// A state at which a function is differentiated, or eight.
 #[derive(Clone, Copy, Debug)]
-pub struct State<'a, T = f64> {
+pub struct ProductState<'a, T = f64> {
     /// Time, s.
     pub t: T,
     /// Pose, m and rad.
@@ -98,9 +98,9 @@ impl<T: Number> Calls<T> {
         }
     }
 
-    fn run(&mut self, state: &State<'_, T>, multiplier: &[T]) {
+    fn run(&mut self, state: &ProductState<'_, T>, multiplier: &[T]) {
         let Self { library, function, product, machine, inputs, results, .. } = self;
-        let &State { t, q, v, a } = state;
+        let &ProductState { t, q, v, a } = state;
         let arguments = Arguments { t, q, v, a, multiplier, inputs, ..Arguments::none() };
         if let Ok(Some(routine)) = library.product(*function, *product) {
             routine.run(machine, &arguments, results);
@@ -144,7 +144,7 @@ impl<T: Number> PullBack<T> {
     }
 
     /// The product at a state, with a weight for each result of the function, in their order.
-    pub fn at(&mut self, state: &State<'_, T>, weights: &[T]) -> Pulled<'_, T> {
+    pub fn at(&mut self, state: &ProductState<'_, T>, weights: &[T]) -> Pulled<'_, T> {
         self.0.run(state, weights);
         let Calls { results, places, .. } = &self.0;
         let [t, q, v, a, parameters, inputs] = places.each_ref().map(|place| &results[place.clone()]);
@@ -187,7 +187,7 @@ impl<T: Number> PushForward<T> {
     }
 
     /// The product at a state, with the changes of all [`numbers`]; one number for each result of the function.
-    pub fn at(&mut self, state: &State<'_, T>, changes: &[T]) -> &[T] {
+    pub fn at(&mut self, state: &ProductState<'_, T>, changes: &[T]) -> &[T] {
         let [.., inputs] = &self.calls.places;
         let (own, of_inputs) = changes.split_at(inputs.start.min(changes.len()));
         self.changes[..own.len()].copy_from_slice(own);
@@ -218,7 +218,7 @@ impl PushForwardOfLarge {
     }
 
     /// The product at a state and with live parameters, with the changes of all [`numbers`]; one number for each result of the function.
-    pub fn at(&mut self, state: &State<'_>, parameters: &[f64], changes: &[f64], out: &mut [f64]) {
+    pub fn at(&mut self, state: &ProductState<'_>, parameters: &[f64], changes: &[f64], out: &mut [f64]) {
         let mut changes = changes.iter().copied();
         let mut next = |number: f64| {
             let mut slopes = [0.0; DIRECTIONS];

@@ -26,7 +26,7 @@ impl Routine {
     #[must_use]
     pub fn new(program: &Program, function: &Function) -> Self {
         let alone = program.alone(function);
-        let constants = Constants::of(&alone);
+        let constants = Constants::new(&alone);
         let code = alone.functions.iter().map(|function| assemble(&alone, &constants, function)).next();
         let is_zero = |slot: &ExprId| matches!(program.op(*slot), Op::Constant(number) if number.value() == 0.0);
         let slots = function.outputs.iter().enumerate();

@@ -4,7 +4,7 @@
 //! that are positive for some of these choose between sine and cosine and their signs. The last pause reads the sum of all squares of angles: if it is
 //! larger than [`MOST`], or NaN, an angle may be too large, and the results do not count.
 
-use crane_jit::{Line, Step, Value, value};
+use crane_jit::{Step, StraightLine, Value, value};
 use crane_model::rt::sines::{COSINE, HALF_PI, LARGEST, ROUND, SINE};
 
 use crate::bytecode::Kind;
@@ -17,15 +17,15 @@ const PLAIN: [f64; 11] = [-0.0, 1.0, -1.0, 0.5, 0.25, 0.125, 0.375, std::f64::co
 
 /// The line with the sines and cosines of its pauses, and what its other pauses compute. Given values are followed by numbers. Without sines there is no
 /// last pause.
-pub fn with_sines(line: &Line, pauses: &[Kind]) -> (Line, Vec<Kind>) {
+pub fn with_sines(line: &StraightLine, pauses: &[Kind]) -> (StraightLine, Vec<Kind>) {
     let numbers: Vec<f64> = [&PLAIN[..], &HALF_PI.map(|part| -part), &SINE, &COSINE].concat();
     let given = line.given.iter().copied().chain(numbers.iter().copied().map(Some)).collect::<Vec<_>>();
-    let mut writer = Writer {
+    let mut writer = SineWriter {
         of: (0..line.given.len()).map(value).collect(),
         numbers: (numbers, line.given.len()),
         count: given.len(),
         squares: None,
-        line: Line { given, steps: vec![], results: line.results },
+        line: StraightLine { given, steps: vec![], results: line.results },
     };
     let mut others = Vec::new();
     let mut pauses = pauses.iter().copied();
@@ -61,7 +61,7 @@ pub fn with_sines(line: &Line, pauses: &[Kind]) -> (Line, Vec<Kind>) {
 }
 
 /// A line under construction.
-struct Writer {
+struct SineWriter {
     /// Each value of the line with pauses.
     of: Vec<Value>,
     /// Numbers, and the place of the first.
@@ -70,10 +70,10 @@ struct Writer {
     count: usize,
     /// The sum of the squares of all angles.
     squares: Option<Value>,
-    line: Line,
+    line: StraightLine,
 }
 
-impl Writer {
+impl SineWriter {
     fn push(&mut self, step: Step) -> Value {
         self.line.steps.push(step);
         self.count += 1;
@@ -240,10 +240,10 @@ mod tests {
     fn sines_in_a_line_have_the_bits_of_the_runtime() {
         let steps = [Step::Pause { arguments: vec![0], makes: 2 }];
         let stores = (0..2).map(|place| Step::Store { place, value: place + 1 });
-        let line = Line { given: vec![None], steps: steps.into_iter().chain(stores).collect(), results: 2 };
+        let line = StraightLine { given: vec![None], steps: steps.into_iter().chain(stores).collect(), results: 2 };
         let (line, others) = with_sines(&line, &[Kind::Angle]);
         assert!(others.is_empty(), "no other pause");
-        let Some(code) = Code::of(&line, ROUNDING, Width::Eight) else { return };
+        let Some(code) = Code::compile(&line, ROUNDING, Width::Eight) else { return };
         let mut frame = vec![f64x8::splat(0.0); code.places().max(line.given.len())];
         let numbers = line.given.iter().enumerate().filter_map(|(place, number)| Some((place, (*number)?)));
         numbers.chain(code.numbers()).for_each(|(place, number)| frame[place] = f64x8::splat(number));

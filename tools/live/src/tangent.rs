@@ -3,7 +3,7 @@
 //! A value is in all eight places of its cell, its derivatives are in those of another one, if it has any. A product then takes two
 //! operations more, or one if one of its factors is a number.
 
-use crane_jit::{Line, Step, Value, value};
+use crane_jit::{Step, StraightLine, Value, value};
 
 use crate::bytecode::Kind;
 
@@ -19,16 +19,16 @@ const INTEGERS: usize = 3;
 
 /// The line whose given values are those of a line, then their derivatives, then some numbers; and whose results are those of the line, then
 /// their derivatives. `pauses`: what the pauses of the line compute.
-pub fn tangent(line: &Line, pauses: &[Kind]) -> Line {
+pub fn tangent(line: &StraightLine, pauses: &[Kind]) -> StraightLine {
     let given = line.given.len();
     let slopes = line.given.iter().map(|number| number.map(|_| 0.0));
     let all: Vec<Option<f64>> = line.given.iter().copied().chain(slopes).chain(NUMBERS.into_iter().map(Some)).collect();
     let of_given = |at: usize| Number { value: value(at), slopes: line.given[at].is_none().then(|| value(given + at)) };
-    let mut writer = Writer {
+    let mut writer = TangentWriter {
         of: (0..given).map(of_given).collect(),
         numbers: 2 * given,
         count: all.len(),
-        line: Line { given: all, steps: vec![], results: 2 * line.results },
+        line: StraightLine { given: all, steps: vec![], results: 2 * line.results },
     };
     let mut pauses = pauses.iter();
     for step in &line.steps {
@@ -53,18 +53,18 @@ struct Number {
 }
 
 /// A line under construction.
-struct Writer {
+struct TangentWriter {
     /// Each value of the line without derivatives.
     of: Vec<Number>,
     /// The place of the first of [`NUMBERS`].
     numbers: usize,
     /// The number of values.
     count: usize,
-    line: Line,
+    line: StraightLine,
 }
 
-impl Writer {
-    fn of(&self, value: Value) -> Number {
+impl TangentWriter {
+    fn number_of(&self, value: Value) -> Number {
         self.of[value as usize]
     }
 
@@ -102,7 +102,7 @@ impl Writer {
     fn write(&mut self, step: &Step) {
         let made = match *step {
             Step::MulAdd(operands) => {
-                let [a, b, c] = operands.map(|operand| self.of(operand));
+                let [a, b, c] = operands.map(|operand| self.number_of(operand));
                 let value = self.push(Step::MulAdd([a.value, b.value, c.value]));
                 let mut slopes = c.slopes;
                 for (one, other) in [(a, b), (b, a)] {
@@ -113,7 +113,7 @@ impl Writer {
                 Number { value, slopes }
             }
             Step::Div(operands) => {
-                let [a, b] = operands.map(|operand| self.of(operand));
+                let [a, b] = operands.map(|operand| self.number_of(operand));
                 let value = self.push(Step::Div([a.value, b.value]));
                 let mut above = a.slopes;
                 if let Some(below) = b.slopes {
@@ -126,7 +126,7 @@ impl Writer {
             Step::Min(operands) => self.extreme(operands, true),
             Step::Max(operands) => self.extreme(operands, false),
             Step::Sqrt(a) => {
-                let a = self.of(a);
+                let a = self.number_of(a);
                 let value = self.push(Step::Sqrt(a.value));
                 let slopes = a.slopes.map(|own| {
                     let half = self.push(Step::Div([self.number(HALF), value]));
@@ -139,7 +139,7 @@ impl Writer {
                 Number { value, slopes }
             }
             Step::Select(operands) => {
-                let [a, b, c] = operands.map(|operand| self.of(operand));
+                let [a, b, c] = operands.map(|operand| self.number_of(operand));
                 let value = self.push(Step::Select([a.value, b.value, c.value]));
                 Number { value, slopes: self.select(a.value, b.slopes, c.slopes) }
             }
@@ -150,7 +150,7 @@ impl Writer {
 
     /// The smaller or the larger of two.
     fn extreme(&mut self, operands: [Value; 2], smaller: bool) -> Number {
-        let [a, b] = operands.map(|operand| self.of(operand));
+        let [a, b] = operands.map(|operand| self.number_of(operand));
         let pair = [a.value, b.value];
         let value = self.push(if smaller { Step::Min(pair) } else { Step::Max(pair) });
         let (less, more) = if smaller { (a.value, b.value) } else { (b.value, a.value) };
@@ -159,7 +159,7 @@ impl Writer {
     }
 
     fn store(&mut self, place: u32, stored: Value, results: usize) {
-        let Number { value: own, slopes } = self.of(stored);
+        let Number { value: own, slopes } = self.number_of(stored);
         self.line.steps.push(Step::Store { place, value: own });
         let place = place + value(results);
         self.line.steps.push(Step::Store { place, value: self.or_zero(slopes) });
@@ -168,7 +168,7 @@ impl Writer {
     /// Functions of several arguments at once, order by order.
     fn pause(&mut self, kind: Kind, arguments: &[Value]) {
         let reads = arguments.len();
-        let arguments: Vec<Number> = arguments.iter().map(|argument| self.of(*argument)).collect();
+        let arguments: Vec<Number> = arguments.iter().map(|argument| self.number_of(*argument)).collect();
         let [orders, made] = match kind {
             Kind::Angle => [2, 2],
             Kind::Stumpff => STUMPFF,

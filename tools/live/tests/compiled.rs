@@ -239,7 +239,7 @@ fn a_run_of_ten_seconds_agrees() {
             continue;
         }
         let [expected, found] = [&*compiled, &live as &dyn DynCrane].map(|crane| {
-            let settings = Settings { duration: 10.0, ..Settings::of(crane.description()) };
+            let settings = Settings { duration: 10.0, ..Settings::from_description(crane.description()) };
             let mut last = vec![];
             let mut observe = |sample: &crane_model::dynamics::Sample<'_>| {
                 last = [sample.q, sample.v].concat();
@@ -267,7 +267,7 @@ fn ensembles_agree() {
             let settings = Settings {
                 duration: 20.0 * description.step,
                 output: 20.0 * description.step,
-                ..Settings::of(description)
+                ..Settings::from_description(description)
             };
             let mut last = vec![vec![]; members.len()];
             let mut observe =

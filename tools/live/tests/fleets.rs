@@ -178,7 +178,7 @@ fn the_runs_of_a_fleet_are_those_of_its_cranes() {
         let rows: Vec<Case> = (0..CRANES).map(case).collect();
         for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
             let tolerance = 1e-7;
-            let of_spec = Settings::of(crane.description());
+            let of_spec = Settings::from_description(crane.description());
             // Short sections at pins and pads allow short explicit steps only.
             let is_stiff = method == Method::DormandPrince && name == "specs/examples/telescopic_loader";
             let duration = if is_stiff { 0.3 } else { 1.5 };
@@ -232,7 +232,7 @@ const WILD: f64 = 1e7;
 #[test]
 fn a_crane_that_does_not_reach_the_end_does_not_change_the_others() {
     let crane = shipped("specs/knuckle_boom");
-    let settings = Settings { duration: 0.5, audit: false, ..Settings::of(crane.description()) };
+    let settings = Settings { duration: 0.5, audit: false, ..Settings::from_description(crane.description()) };
     let n = crane.size();
     let mut rows: Vec<Case> = (0..CRANES).map(|lane| parameters(&crane, lane).into()).collect();
     rows[3].v = Some(vec![WILD; n]);
@@ -247,7 +247,7 @@ fn a_crane_that_does_not_reach_the_end_does_not_change_the_others() {
 #[test]
 fn a_cancelled_fleet_has_no_results() {
     let crane = shipped("specs/knuckle_boom");
-    let settings = Settings { audit: false, ..Settings::of(crane.description()) };
+    let settings = Settings { audit: false, ..Settings::from_description(crane.description()) };
     let rows: Vec<Case> = (0..2 * CRANES).map(|lane| parameters(&crane, lane % CRANES).into()).collect();
     let steps = AtomicUsize::new(0);
     let cancelled = |_| steps.fetch_add(1, Ordering::Relaxed) > 50;
@@ -261,7 +261,7 @@ fn a_cancelled_fleet_has_no_results() {
 #[test]
 fn rows_that_fill_less_than_half_of_a_fleet_run_alone() {
     let crane = shipped("specs/knuckle_boom");
-    let settings = Settings { duration: 0.5, audit: false, ..Settings::of(crane.description()) };
+    let settings = Settings { duration: 0.5, audit: false, ..Settings::from_description(crane.description()) };
     let rows: Vec<Case> = (0..CRANES + 3).map(|lane| parameters(&crane, lane % CRANES).into()).collect();
     let (together, alone) = (runs(&crane, &rows, rows.len(), &settings), runs(&crane, &rows, 1, &settings));
     let ends = |outcomes: &[Outcome]| outcomes.iter().map(|row| row.end.clone()).collect::<Vec<_>>();

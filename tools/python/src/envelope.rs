@@ -23,7 +23,7 @@ const FURTHEST: f64 = 1000.0;
 
 /// The request, as given.
 #[derive(FromPyObject)]
-pub struct Asked {
+pub struct ChartRequest {
     #[pyo3(item)]
     ranges: Vec<(String, Vec<f64>)>,
     #[pyo3(item)]
@@ -57,7 +57,7 @@ impl Crane {
     fn run_envelope<'py>(
         &self,
         py: Python<'py>,
-        asked: Asked,
+        asked: ChartRequest,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         if !self.is_single() {
@@ -88,16 +88,16 @@ impl Crane {
         run.map_err(|refused| PyValueError::new_err(refused.to_string()))?;
         let ratings = ratings.into_inner().unwrap_or_else(PoisonError::into_inner);
         let ratings: Vec<Rating> = ratings.into_iter().flatten().collect();
-        let all = Named { crane, slew: SlewAxis::of(crane), point, shape: axes_shape(&envelope) }
+        let all = Named { crane, slew: SlewAxis::new(crane), point, shape: axes_shape(&envelope) }
             .all(py, &envelope, &ratings)?;
-        let coverage = Coverage::of(crane, &envelope.limits);
+        let coverage = Coverage::new(crane, &envelope.limits);
         all.set_item("considered", coverage.considered)?;
         all.set_item("not_considered", coverage.not_considered)?;
         Ok(all)
     }
 }
 
-impl Asked {
+impl ChartRequest {
     fn envelope(&self, crane: &dyn DynCrane) -> PyResult<Envelope> {
         let description = crane.description();
         let mut axes: Vec<Axis> = Vec::new();

@@ -18,7 +18,7 @@ use crate::parallel::map_rows;
 const INVALID: &str = "invalid";
 
 /// The result of statics for a row.
-pub struct Found {
+pub struct FoundEquilibria {
     equilibrium: Equilibrium,
     /// Why it is not stable, if it is not.
     diagnosis: Option<Diagnosis>,
@@ -27,7 +27,7 @@ pub struct Found {
     points: Vec<f64>,
 }
 
-impl Found {
+impl FoundEquilibria {
     /// Solves statics of a crane, with the drives at a time or some of them held at positions, and starting from a pose, if these are given.
     fn new(
         crane: &LiveCrane,
@@ -43,14 +43,14 @@ impl Found {
         }
         let equilibrium = match (at, from) {
             (_, Some(from)) if !held.is_empty() => {
-                Problem::of(crane).holding(&positions).from(from).settings(settings).solve()
+                Problem::new(crane).holding(&positions).from(from).settings(settings).solve()
             }
             (_, None) if !held.is_empty() => RestSearch { crane, positions: &positions }.find(None),
             (None, None) => crane.equilibrium(settings),
-            (at, Some(from)) => Problem::of(crane).at_time(at.unwrap_or(0.0)).from(from).settings(settings).solve(),
-            (Some(t), None) => Problem::of(crane).at_time(t).from(&crane.guess()).settings(settings).solve(),
+            (at, Some(from)) => Problem::new(crane).at_time(at.unwrap_or(0.0)).from(from).settings(settings).solve(),
+            (Some(t), None) => Problem::new(crane).at_time(t).from(&crane.guess()).settings(settings).solve(),
         };
-        let diagnosis = (!equilibrium.is_stable()).then(|| Diagnosis::of(crane, &equilibrium));
+        let diagnosis = (!equilibrium.is_stable()).then(|| Diagnosis::new(crane, &equilibrium));
         let q = &equilibrium.q;
         let efforts = crane.drive_efforts_holding(t, &positions, q);
         let flat = |vectors: Vec<crane_model::nalgebra::Vector3<f64>>| vectors.iter().flatten().copied().collect();
@@ -155,15 +155,15 @@ impl Crane {
             let held = held.iter().enumerate();
             let held: Vec<_> =
                 held.map(|(index, (drive, _))| (*drive, joined.row(first_held + index, 1, row)[0])).collect();
-            Some(Found::new(&self.of_joined_row(&joined, row), (at, &held), from, &settings))
+            Some(FoundEquilibria::new(&self.of_joined_row(&joined, row), (at, &held), from, &settings))
         })?;
-        let message = |(row, found): (usize, &Option<Found>)| match found {
-            Some(Found { equilibrium, diagnosis, .. }) => {
+        let message = |(row, found): (usize, &Option<FoundEquilibria>)| match found {
+            Some(FoundEquilibria { equilibrium, diagnosis, .. }) => {
                 format!("{equilibrium}{}", diagnosis.as_ref().map_or_else(String::new, Diagnosis::to_string))
             }
             None => refused(row).map_or_else(String::new, |bad| bad.reason.clone()),
         };
-        let reason = |row: usize, found: &Option<Found>| {
+        let reason = |row: usize, found: &Option<FoundEquilibria>| {
             let stands = found.as_ref().is_some_and(|found| found.equilibrium.is_stable());
             (!stands).then(|| message((row, found)))
         };
@@ -185,8 +185,8 @@ impl Crane {
             )));
         }
         warn_of_rows(py, &bad, &joined.shape)?;
-        let numbers = |of: fn(&Found) -> &Vec<f64>, defaults: &[usize]| {
-            let row = |found: &Option<Found>| -> Vec<f64> {
+        let numbers = |of: fn(&FoundEquilibria) -> &Vec<f64>, defaults: &[usize]| {
+            let row = |found: &Option<FoundEquilibria>| -> Vec<f64> {
                 let found = found.as_ref().filter(|found| found.rests());
                 found.map_or_else(|| vec![f64::NAN; defaults.iter().product()], |found| of(found).clone())
             };

@@ -1,6 +1,6 @@
 //! How a function is computed of states: rows of all arguments, eight at a time or one by one, on all threads.
 
-use crane_live::rows::{Evaluation, Rows};
+use crane_live::rows::{Evaluation, ParameterRows};
 use crane_live::{FunctionId, Refusal};
 use crane_model::dyn_crane::DynCrane;
 use crane_model::rt::lanes::f64x8;
@@ -25,7 +25,7 @@ pub const STATE: [&str; 4] = ["t", "q", "v", "a"];
 
 /// A state as it was given.
 #[derive(Clone, Copy, Default)]
-pub struct State<'a, 'py> {
+pub struct StateArguments<'a, 'py> {
     /// Time.
     pub t: Given<'a, 'py>,
     /// Coordinates.
@@ -36,7 +36,7 @@ pub struct State<'a, 'py> {
     pub a: Given<'a, 'py>,
 }
 
-impl<'a, 'py> State<'a, 'py> {
+impl<'a, 'py> StateArguments<'a, 'py> {
     /// At rest.
     pub fn pose(q: &'a Bound<'py, PyAny>) -> Self {
         Self { q: Some(q), ..Self::default() }
@@ -66,7 +66,7 @@ impl Crane {
         &self,
         py: Python<'py>,
         function: FunctionId,
-        state: State<'_, 'py>,
+        state: StateArguments<'_, 'py>,
         invalid: &str,
     ) -> Array<'py> {
         let of_row = &*self.live.shape(function);
@@ -76,7 +76,7 @@ impl Crane {
         let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
         let [t, q, v, a, parameters] = [0, 1, 2, 3, 4].map(|index| &*joined.arguments[index]);
         let parameters = if self.is_single() { &[][..] } else { parameters };
-        let rows = Rows { t, q, v, a, parameters };
+        let rows = ParameterRows { t, q, v, a, parameters };
         let width = of_row.iter().product::<usize>();
         if joined.shape.is_empty() && bad.is_empty() {
             let out = zeros(py, &[], of_row);
@@ -100,7 +100,7 @@ impl Crane {
     pub fn one_by_one<'py>(
         &self,
         py: Python<'py>,
-        state: State<'_, 'py>,
+        state: StateArguments<'_, 'py>,
         of_row: &[usize],
         invalid: &str,
         write: impl Fn(&crane_live::LiveCrane, &Moment, &mut [f64]) + Sync,
@@ -171,7 +171,7 @@ impl Crane {
     }
 
     /// t, q, v, a; empty if not given, which means t = 0 for the time.
-    pub fn read(&self, state: State<'_, '_>) -> PyResult<[Argument; 4]> {
+    pub fn read(&self, state: StateArguments<'_, '_>) -> PyResult<[Argument; 4]> {
         let description = self.live.description();
         let coordinates = |name: &str, given: Given<'_, '_>| {
             given.map_or_else(|| Ok(Argument::none()), |given| Argument::coordinates(name, given, description))

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{Array, Given, STATE, State};
+use crate::evaluation::{Array, Given, STATE, StateArguments};
 use crate::mistakes::{Invalid, warn_of_rows};
 use crate::parallel::map_rows;
 
@@ -28,7 +28,7 @@ impl Crane {
         invalid: &str,
     ) -> Array<'py> {
         let width = self.live.size() + force_states::columns(self.live.description()).len();
-        self.of_states(py, State { t, ..State::moving(q, v) }, (x, invalid), width, |crane, state| {
+        self.of_states(py, StateArguments { t, ..StateArguments::moving(q, v) }, (x, invalid), width, |crane, state| {
             let (accelerations, rates) = force_states::accelerations(crane, state);
             [accelerations, rates].concat()
         })
@@ -49,7 +49,7 @@ impl Crane {
             .into_iter()
             .map(|column| column.name)
             .collect();
-        let state = State { t, ..State::moving(q, v) };
+        let state = StateArguments { t, ..StateArguments::moving(q, v) };
         let all = self.of_states(py, state, (x, invalid), names.len(), |crane, state| quantities_at(crane, state))?;
         Ok((all.into_any(), names))
     }
@@ -60,7 +60,7 @@ impl Crane {
     fn of_states<'py>(
         &self,
         py: Python<'py>,
-        state: State<'_, 'py>,
+        state: StateArguments<'_, 'py>,
         (x, invalid): (Given<'_, 'py>, &str),
         width: usize,
         compute: impl Fn(&LiveCrane, &StateAt<'_>) -> Vec<f64> + Sync,

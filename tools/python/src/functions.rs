@@ -6,7 +6,7 @@ use crane_quantities::{axes, quantities};
 use pyo3::prelude::*;
 
 use crate::crane::Crane;
-use crate::evaluation::{Array, Given, Moment, State};
+use crate::evaluation::{Array, Given, Moment, StateArguments};
 
 /// The methods of the table of quantities, with its documentation.
 macro_rules! methods {
@@ -64,7 +64,7 @@ impl Crane {
     #[pyo3(signature = (q, *, invalid="raise"))]
     fn transform_second_derivatives<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
         let (bodies, n) = (self.live.description().bodies.len(), self.live.size());
-        let state = State::pose(q);
+        let state = StateArguments::pose(q);
         self.one_by_one(py, state, &[bodies, n, n, 4, 4], invalid, |crane, Moment { q, .. }, out| {
             let crane: &dyn DynCrane = crane;
             let mut matrices = crane.transform_second_derivatives_at(q).into_iter();
@@ -96,19 +96,30 @@ impl Crane {
         t: Given<'_, 'py>,
         invalid: &str,
     ) -> Array<'py> {
-        self.compute(py, FunctionId::ForwardDynamicsDerivatives, State { t, ..State::moving(q, v) }, invalid)
+        self.compute(
+            py,
+            FunctionId::ForwardDynamicsDerivatives,
+            StateArguments { t, ..StateArguments::moving(q, v) },
+            invalid,
+        )
     }
 
     /// (..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them.
     #[pyo3(name = "_small_motions", signature = (q, *, invalid="raise"))]
     fn small_motions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
-        self.compute(py, FunctionId::Linearise, State::pose(q), invalid)
+        self.compute(py, FunctionId::Linearise, StateArguments::pose(q), invalid)
     }
 }
 
 impl Crane {
     /// A function of all rows. Accelerations are those with closed loops, as far as they follow from the state.
-    fn function<'py>(&self, py: Python<'py>, id: FunctionId, state: State<'_, 'py>, invalid: &str) -> Array<'py> {
+    fn function<'py>(
+        &self,
+        py: Python<'py>,
+        id: FunctionId,
+        state: StateArguments<'_, 'py>,
+        invalid: &str,
+    ) -> Array<'py> {
         let has_loops = !self.live.loop_joints().is_empty() && !self.live.description().has_hidden_forces();
         if id == FunctionId::ForwardDynamics && has_loops {
             return self.one_by_one(py, state, &[self.live.size()], invalid, |crane, at, out| {

@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{Given, STATE, State};
+use crate::evaluation::{Given, STATE, StateArguments};
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_numbers, warn_of_rows};
 use crate::parallel::map_rows;
 
@@ -65,7 +65,7 @@ impl Crane {
         invalid: &str,
     ) -> PyResult<Bound<'py, PyDict>> {
         let (invalid, forces) = (Invalid::named(invalid)?, forces_named(valves)?);
-        let [t, q, v, _] = self.read(State { t, q: Some(q), v, a: None })?;
+        let [t, q, v, _] = self.read(StateArguments { t, q: Some(q), v, a: None })?;
         let names = force_states::columns(self.live.description());
         let x = x.map_or_else(
             || Ok(Argument::none()),

@@ -62,7 +62,7 @@ impl Timing {
                 "`tolerance` has no effect with {method}: give `step`, or method=\"bdf\""
             )));
         }
-        let defaults = Settings::of(description);
+        let defaults = Settings::from_description(description);
         let settings = Settings {
             method,
             duration: self.duration.unwrap_or(defaults.duration),

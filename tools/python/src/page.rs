@@ -57,7 +57,7 @@ impl Given<'_> {
         let table = table_of(crane, &self.table)?;
         let times: Vec<f64> = table.rows.iter().map(|row| row[0]).collect();
         let duration = times[times.len() - 1];
-        let expected = Settings::of(crane.description());
+        let expected = Settings::from_description(crane.description());
         let settings = Settings {
             duration,
             output: times.get(1).map_or(duration, |second| second - times[0]),

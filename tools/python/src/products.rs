@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{Array, Given, STATE, State, forget};
+use crate::evaluation::{Array, Given, STATE, StateArguments, forget};
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::for_rows;
 
@@ -26,7 +26,7 @@ trait Multiply<T> {
     /// Other live parameters, all of them.
     fn set_parameters(&mut self, parameters: &[T]);
     /// The product with a vector, number by number.
-    fn multiply(&mut self, state: &products::State<'_, T>, vector: &[T], take: &mut dyn FnMut(usize, T));
+    fn multiply(&mut self, state: &products::ProductState<'_, T>, vector: &[T], take: &mut dyn FnMut(usize, T));
 }
 
 impl<T: Batch> Multiply<T> for Option<PullBack<T>> {
@@ -35,7 +35,7 @@ impl<T: Batch> Multiply<T> for Option<PullBack<T>> {
             own.set_parameters(parameters);
         }
     }
-    fn multiply(&mut self, state: &products::State<'_, T>, weights: &[T], take: &mut dyn FnMut(usize, T)) {
+    fn multiply(&mut self, state: &products::ProductState<'_, T>, weights: &[T], take: &mut dyn FnMut(usize, T)) {
         let pulled = self.as_mut().map(|own| own.at(state, weights));
         pulled.iter().flat_map(products::Pulled::all).enumerate().for_each(|(place, number)| take(place, number));
     }
@@ -47,7 +47,7 @@ impl<T: Batch> Multiply<T> for Option<PushForward<T>> {
             own.set_parameters(parameters);
         }
     }
-    fn multiply(&mut self, state: &products::State<'_, T>, changes: &[T], take: &mut dyn FnMut(usize, T)) {
+    fn multiply(&mut self, state: &products::ProductState<'_, T>, changes: &[T], take: &mut dyn FnMut(usize, T)) {
         let pushed = self.as_mut().map(|own| own.at(state, changes));
         pushed.into_iter().flatten().enumerate().for_each(|(place, number)| take(place, *number));
     }
@@ -64,7 +64,7 @@ impl Multiply<f64> for Large {
     fn set_parameters(&mut self, parameters: &[f64]) {
         self.parameters = parameters.to_vec();
     }
-    fn multiply(&mut self, state: &products::State<'_>, changes: &[f64], take: &mut dyn FnMut(usize, f64)) {
+    fn multiply(&mut self, state: &products::ProductState<'_>, changes: &[f64], take: &mut dyn FnMut(usize, f64)) {
         self.push.at(state, &self.parameters, changes, &mut self.results);
         self.results.iter().enumerate().for_each(|(place, number)| take(place, *number));
     }
@@ -101,7 +101,7 @@ impl Crane {
     ) -> Array<'py> {
         let id = self.with_products(function)?;
         let results: usize = self.live.shape(id).iter().product();
-        let state = State { t, q, v, a };
+        let state = StateArguments { t, q, v, a };
         check_arguments(id, &state)?;
         let weights = Argument::of_width("weights", weights, results, "one for each result")?;
         let numbers = self.product_numbers();
@@ -133,7 +133,7 @@ impl Crane {
     ) -> Array<'py> {
         let id = self.with_products(function)?;
         let of_row = self.live.shape(id).clone();
-        let state = State { t, q, v, a };
+        let state = StateArguments { t, q, v, a };
         check_arguments(id, &state)?;
         let changes = Argument::of_width("changes", changes, self.product_numbers(), "one for each number")?;
         let width = of_row.iter().product();
@@ -187,7 +187,7 @@ impl Crane {
     fn products<'py, R: Multiply<f64>, S: Multiply<f64x8>>(
         &self,
         py: Python<'py>,
-        state: State<'_, 'py>,
+        state: StateArguments<'_, 'py>,
         (vectors, name): (&Argument, &str),
         (width, of_row): (usize, &[usize]),
         invalid: &str,
@@ -259,7 +259,7 @@ fn at_rows<'r, T: Batch, M: Multiply<T>>(
         products.set_parameters(&lanes(index));
     }
     let t = t.first().copied().unwrap_or(T::splat(0.0));
-    products.multiply(&crane_live::products::State { t, q: &q, v: &v, a: &a }, &vector, &mut |place, number| {
+    products.multiply(&crane_live::products::ProductState { t, q: &q, v: &v, a: &a }, &vector, &mut |place, number| {
         for lane in 0..count {
             out[lane * width + place] = number.lane(lane);
         }
@@ -268,7 +268,7 @@ fn at_rows<'r, T: Batch, M: Multiply<T>>(
 }
 
 /// Refuses arguments that a function does not have, and a lack of those that it needs.
-fn check_arguments(function: FunctionId, state: &State<'_, '_>) -> PyResult<()> {
+fn check_arguments(function: FunctionId, state: &StateArguments<'_, '_>) -> PyResult<()> {
     let Some(own) = function.python() else { return Ok(()) };
     let given = [("q", state.q), ("v", state.v), ("a", state.a), ("t", state.t)];
     let takes: Vec<&str> = own.names().collect();

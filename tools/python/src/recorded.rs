@@ -38,7 +38,7 @@ type OfAll = (Vec<OfDrive>, Vec<OfCylinder>, Option<[f64; 4]>);
 #[pyfunction]
 pub fn duties_of(crane: PyRef<'_, Crane>, table: PyReadonlyArray2<'_, f64>) -> PyResult<OfAll> {
     let crane: &dyn DynCrane = &crane.live;
-    let Duties { drives, cylinders, pump } = Duties::of(crane.description(), &table_of(crane, &table)?);
+    let Duties { drives, cylinders, pump } = Duties::new(crane.description(), &table_of(crane, &table)?);
     let drives = drives.into_iter().map(|duty| {
         let numbers = [duty.effort, duty.rms, duty.rate, duty.power, duty.braking_power, duty.work, duty.braking_work];
         (duty.name, duty.kind.force_unit().to_owned(), format!("{}/s", duty.kind.unit()), numbers)

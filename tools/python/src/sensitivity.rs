@@ -68,7 +68,7 @@ impl Crane {
         let Some(first) = found.iter().flatten().next() else {
             return Err(NoEquilibrium::new_err(format!("{}: no row has a stable equilibrium", description.name)));
         };
-        let rows = Rows { found: &found, outputs: &first.outputs, count: names.len(), n: self.live.size() };
+        let rows = CaseRows { found: &found, outputs: &first.outputs, count: names.len(), n: self.live.size() };
         let (outputs, count, n) = (rows.outputs.len(), rows.count, rows.n);
         let all = PyDict::new(py);
         all.set_item("q", array(py, rows.pose(|found| found.q.clone(), n), shape, &[n])?)?;
@@ -151,14 +151,14 @@ impl Crane {
 }
 
 /// Results of all rows, with the outputs of the first that has any.
-struct Rows<'a> {
+struct CaseRows<'a> {
     found: &'a [Option<&'a Sensitivity>],
     outputs: &'a [Output],
     count: usize,
     n: usize,
 }
 
-impl Rows<'_> {
+impl CaseRows<'_> {
     /// Numbers of each row; NaN where there are none.
     fn pose(&self, numbers: impl Fn(&Sensitivity) -> Vec<f64>, count: usize) -> Vec<f64> {
         self.found.iter().flat_map(|found| found.map_or_else(|| vec![f64::NAN; count], &numbers)).collect()

@@ -22,7 +22,7 @@ use crate::motion::{Timing, raised, statistics, unless};
 use crate::parallel::map_rows;
 
 /// A motion of one crane, and why it ended if it did.
-struct Row {
+struct SteppedCase {
     motion: SteeredMotion,
     failed: Option<Failure>,
 }
@@ -51,7 +51,7 @@ pub struct Motions {
     states: usize,
     /// Names and units of its inputs.
     inputs: Vec<(Text, Text)>,
-    rows: Vec<Mutex<Row>>,
+    rows: Vec<Mutex<SteppedCase>>,
 }
 
 /// New values of inputs: index, and values or `None` for that of the spec, over (steps, rows).
@@ -135,7 +135,7 @@ impl Crane {
             n: self.live.size(),
             states: ForceStates::new(description).len(),
             inputs: description.inputs.iter().map(|info| (info.name.clone(), info.unit.clone())).collect(),
-            rows: motions.into_iter().map(|motion| Mutex::new(Row { motion, failed: None })).collect(),
+            rows: motions.into_iter().map(|motion| Mutex::new(SteppedCase { motion, failed: None })).collect(),
         }
     }
 
@@ -307,7 +307,7 @@ impl Motions {
 }
 
 impl Motions {
-    fn row(&self, row: usize) -> std::sync::MutexGuard<'_, Row> {
+    fn row(&self, row: usize) -> std::sync::MutexGuard<'_, SteppedCase> {
         self.rows[row].lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -320,7 +320,7 @@ impl Motions {
         let (count, hold) = (self.rows.len(), if linear { Hold::Linear } else { Hold::Constant });
         map_rows(py, count, |row, off| {
             let mut now = self.row(row);
-            let Row { motion, failed } = &mut *now;
+            let SteppedCase { motion, failed } = &mut *now;
             let mut path = Vec::with_capacity(steps * (2 * self.n + 1));
             for step in 0..steps {
                 if failed.is_none() {
@@ -387,5 +387,5 @@ fn fixed(numbers: Bound<'_, numpy::PyArrayDyn<f64>>) -> Bound<'_, numpy::PyArray
 
 /// The failure of a motion, as an exception.
 fn failed(stopped: Stopped, name: &Text) -> PyErr {
-    raised(&Reason::Stopped { stopped, near_singular: None, limit: None }.of(name))
+    raised(&Reason::Stopped { stopped, near_singular: None, limit: None }.for_crane(name))
 }

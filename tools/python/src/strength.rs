@@ -9,7 +9,7 @@ use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
 use crate::crane::Crane;
-use crate::evaluation::{Given, Moment, State};
+use crate::evaluation::{Given, Moment, StateArguments};
 
 /// Numbers of a section: normal, shear, torsional and equivalent stress, utilisation.
 const OF_SECTION: usize = 5;
@@ -31,7 +31,7 @@ impl Crane {
         invalid: &str,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let rest = self.rest(py);
-        let state = State { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
+        let state = StateArguments { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
         let of_row = [self.live.description().cuts().len(), 6];
         if self.live.description().has_valves() {
             return self.one_by_one(py, state, &of_row, invalid, write_wrenches);
@@ -52,7 +52,7 @@ impl Crane {
         invalid: &str,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let rest = self.rest(py);
-        let state = State { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
+        let state = StateArguments { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
         let width = OF_SECTION * self.live.description().sections.len() + OF_LINE;
         self.one_by_one(py, state, &[width], invalid, write_wrenches_of)
     }

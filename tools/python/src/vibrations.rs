@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{Given, Moment, STATE, State};
+use crate::evaluation::{Given, Moment, STATE, StateArguments};
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::map_rows;
 
@@ -24,7 +24,7 @@ struct Modes {
 }
 
 impl Modes {
-    fn of(crane: &LiveCrane, q: &[f64]) -> Result<Self, NoModes> {
+    fn new(crane: &LiveCrane, q: &[f64]) -> Result<Self, NoModes> {
         let motions = (crane as &dyn DynCrane).small_motions_at(q);
         Ok(Self { undamped: undamped(&motions)?, damped: damped(&motions)? })
     }
@@ -57,13 +57,19 @@ impl Crane {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.refuse_motions()?;
         let n = self.live.size();
-        self.one_by_one(py, State { t, q: Some(q), v: Some(v), a: Some(a) }, &[3, n, n], invalid, |crane, at, out| {
-            let motions = (crane as &dyn DynCrane).linearise_motion(at.t, [&at.q, &at.v, &at.a]);
-            for (out, matrix) in out.chunks_exact_mut(n * n).zip(motions) {
-                // Row by row.
-                out.copy_from_slice(matrix.transpose().as_slice());
-            }
-        })
+        self.one_by_one(
+            py,
+            StateArguments { t, q: Some(q), v: Some(v), a: Some(a) },
+            &[3, n, n],
+            invalid,
+            |crane, at, out| {
+                let motions = (crane as &dyn DynCrane).linearise_motion(at.t, [&at.q, &at.v, &at.a]);
+                for (out, matrix) in out.chunks_exact_mut(n * n).zip(motions) {
+                    // Row by row.
+                    out.copy_from_slice(matrix.transpose().as_slice());
+                }
+            },
+        )
     }
 
     /// (..., 3 n + 3): poses, rates and efforts of steady motions, drift, acceleration, part reached; `steady_motion` names them.
@@ -104,14 +110,14 @@ impl Crane {
                 }
             }
         };
-        let state = State { t, q: Some(start), v: Some(rates), a: Some(positions) };
+        let state = StateArguments { t, q: Some(start), v: Some(rates), a: Some(positions) };
         self.one_by_one(py, state, &[3 * n + 3], invalid, find)
     }
 
     /// Modes about poses, over parameters and poses: `Crane.modes` names them.
     #[pyo3(name = "_modes", signature = (q, invalid="raise"))]
     fn mode_rows<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> PyResult<Bound<'py, PyDict>> {
-        let (shape, found) = self.about_poses(py, q, invalid, Modes::of)?;
+        let (shape, found) = self.about_poses(py, q, invalid, Modes::new)?;
         let count = |of: fn(&Modes) -> usize| found.iter().flatten().map(of).max().unwrap_or(0);
         let (most, most_damped) = (count(|modes| modes.undamped.len()), count(|modes| modes.damped.len()));
         let n = self.live.size();

@@ -73,7 +73,7 @@ pub struct ReferenceDynamics {
 
 /// A link at a state: its frame, ω and α, velocity and acceleration of its origin.
 #[derive(Clone, Copy)]
-struct Moving {
+struct MovingLink {
     frame: Frame,
     omega: Vector,
     alpha: Vector,
@@ -160,9 +160,9 @@ impl Reference {
         let n = self.coordinates.len();
         let mut result =
             ReferenceDynamics { mass_matrix: vec![0.0; n * n], bias: vec![[0.0; 2]; n], forces: vec![[0.0; 2]; n] };
-        let mut states: Vec<Moving> = Vec::with_capacity(self.links.len());
+        let mut states: Vec<MovingLink> = Vec::with_capacity(self.links.len());
         for link in &self.links {
-            let before = link.parent.map_or(Moving::AT_REST, |parent| states[parent]);
+            let before = link.parent.map_or(MovingLink::AT_REST, |parent| states[parent]);
             let state = before.carrying(link, q, v);
             states.push(state);
             if let Some(moves) = &link.moves {
@@ -186,7 +186,7 @@ impl Reference {
     }
 
     /// Adds the mass of the last link in `states`.
-    fn add_lump(&self, result: &mut ReferenceDynamics, states: &[Moving], lump: &Lump) {
+    fn add_lump(&self, result: &mut ReferenceDynamics, states: &[MovingLink], lump: &Lump) {
         let n = self.coordinates.len();
         let Some((own, &state)) = states.len().checked_sub(1).zip(states.last()) else { return };
         let Lump { mass, com, tensor } = lump.seen_through(&state.frame);
@@ -200,7 +200,7 @@ impl Reference {
         let mut columns: Vec<(usize, Vector, Vector)> = Vec::new();
         let path = std::iter::successors(Some(own), |link| self.links[*link].parent);
         for link in path {
-            let (Some(moves), Moving { frame, .. }) = (&self.links[link].moves, &states[link]) else { continue };
+            let (Some(moves), MovingLink { frame, .. }) = (&self.links[link].moves, &states[link]) else { continue };
             let axis = frame.direction(moves.axis);
             columns.push(if moves.turns {
                 (moves.coordinate, cross(axis, minus(com, frame.origin)), axis)
@@ -236,13 +236,14 @@ pub(super) fn set_oscillations(robot: &mut Robot) {
     }
 }
 
-impl Moving {
-    const AT_REST: Moving = Moving { frame: Frame::WORLD, omega: [0.0; 3], alpha: [0.0; 3], acceleration: [0.0; 3] };
+impl MovingLink {
+    const AT_REST: MovingLink =
+        MovingLink { frame: Frame::WORLD, omega: [0.0; 3], alpha: [0.0; 3], acceleration: [0.0; 3] };
 
     /// The state of a link on this one.
     fn carrying(self, link: &ReferenceLink, q: &[f64], v: &[f64]) -> Self {
         let mut frame = self.frame.outer(&link.placement);
-        let Moving { mut omega, mut alpha, .. } = self;
+        let MovingLink { mut omega, mut alpha, .. } = self;
         let mut own = [0.0; 3];
         if let Some(Moves { coordinate, turns, axis, .. }) = link.moves {
             let motion = if turns { Motion::Revolute } else { Motion::Prismatic };
@@ -257,7 +258,7 @@ impl Moving {
         }
         let way = minus(frame.origin, self.frame.origin);
         let carried = plus(cross(self.alpha, way), cross(self.omega, cross(self.omega, way)));
-        Moving { frame, omega, alpha, acceleration: plus(plus(self.acceleration, carried), own) }
+        MovingLink { frame, omega, alpha, acceleration: plus(plus(self.acceleration, carried), own) }
     }
 }
 

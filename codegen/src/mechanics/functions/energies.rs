@@ -25,7 +25,7 @@ impl Derivation<'_> {
     /// Energy of a kind of force, if it stores any.
     fn energy(&self, kind: Kind) -> Option<Function> {
         let id = kind.row().energy?;
-        Some(self.function(id, vec![self.forces().of(kind).energy()?]))
+        Some(self.function(id, vec![self.forces().forces_of_kind(kind).energy()?]))
     }
 
     /// Power that a kind of force puts in, if it can.

@@ -40,7 +40,7 @@ impl<'g> Derivation<'g> {
     fn generalized(&self, kind: Kind) -> (Vec<Expr<'g>>, SweepTrace) {
         match kind {
             Kind::Drives => self.recorded_if_rigid(|| self.drive_forces()),
-            _ => (self.forces().of(kind).in_motion(), SweepTrace::default()),
+            _ => (self.forces().forces_of_kind(kind).in_motion(), SweepTrace::default()),
         }
     }
 

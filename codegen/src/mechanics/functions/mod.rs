@@ -19,7 +19,7 @@ use super::columns::columns;
 use super::elements::{Posed, Strains};
 use super::factors::{Factor, factors};
 use super::forces::{Forces, Kind};
-use super::forward::{self, ForwardInputs, Motion};
+use super::forward::{self, ForwardInputs, ForwardMotion};
 use super::inertia::Inertias;
 use super::kinematics::Kinematics;
 use super::loop_joints::LoopEquations;
@@ -186,7 +186,7 @@ impl<'g> Derivation<'g> {
     }
 
     /// Accelerations, and efforts of rigid drives, at the present state.
-    fn motion(&self) -> Motion<'g> {
+    fn motion(&self) -> ForwardMotion<'g> {
         let model = &self.model;
         let forces = self.forces().all();
         let prescribed = drives::accelerations(model);
@@ -195,7 +195,7 @@ impl<'g> Derivation<'g> {
     }
 
     /// The motion of the chain, including rotors.
-    fn hybrid_dynamics(&self, inputs: &DynamicsInputs<'_, 'g>) -> Motion<'g> {
+    fn hybrid_dynamics(&self, inputs: &DynamicsInputs<'_, 'g>) -> ForwardMotion<'g> {
         let DynamicsInputs { v, forces, prescribed, gravity } = *inputs;
         let armatures = rotors::armatures(&self.model);
         let efforts = forces.iter().zip(armatures).map(|(&applied, added_inertia)| Effort { applied, added_inertia });

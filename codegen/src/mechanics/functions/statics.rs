@@ -16,7 +16,7 @@ impl<'g> Derivation<'g> {
     pub(super) fn statics(&self) -> Vec<Function> {
         let (model, rest) = (&self.model, Rest::given(&self.model));
         let gradient = self.gradient(&rest);
-        let (mut residual, mut holding) = (gradient.clone(), self.forces().of(Kind::Drives).at_rest(&rest));
+        let (mut residual, mut holding) = (gradient.clone(), self.forces().forces_of_kind(Kind::Drives).at_rest(&rest));
         for CoordinateId(j) in model.chain.rigid_drives().map(|drive| drive.coordinate) {
             // A rigid drive balances the sum of all other forces.
             (residual[j], holding[j]) = (model.zero(), gradient[j]);

@@ -5,7 +5,7 @@
 //! With a compliance γ in series, `F = k₁ x + k₂ h`, `k₁ = k/(1 + k γ)`, `k₂ = ε k/(1 + ε k γ)`, and h within `c (1 + ε k γ)`: what is in series has
 //! given way before the pad presses.
 
-use super::{At, Law};
+use super::{Law, LawState};
 use crate::chain::Clearance;
 use crate::symbolic::Expr;
 
@@ -14,7 +14,7 @@ const CENTRING: f64 = 1e-3;
 
 impl Clearance {
     /// x and h
-    fn pressed<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> [Expr<'g>; 2] {
+    fn pressed<'g>(&self, at: LawState<'_, 'g>, strain: Expr<'g>) -> [Expr<'g>; 2] {
         let clearance = at.number(&self.clearance);
         let clearance = at.softened(CENTRING * at.number(&self.stiffness)).map_or(clearance, |times| clearance * times);
         let held = strain.clamp(-clearance, clearance);
@@ -22,36 +22,36 @@ impl Clearance {
     }
 
     /// `k₂/k₁`
-    fn centring<'g>(&self, at: At<'_, 'g>) -> Expr<'g> {
+    fn centring<'g>(&self, at: LawState<'_, 'g>) -> Expr<'g> {
         let stiffness = at.number(&self.stiffness);
         let times = at.softened(stiffness).zip(at.softened(CENTRING * stiffness));
         times.map_or(at.model.graph.constant(CENTRING), |(stiff, soft)| CENTRING * stiff / soft)
     }
 
-    fn damping<'g>(&self, at: At<'_, 'g>) -> Expr<'g> {
+    fn damping<'g>(&self, at: LawState<'_, 'g>) -> Expr<'g> {
         at.damping(at.number(&self.stiffness), at.number(&self.damping))
     }
 }
 
 impl Law for Clearance {
     /// `k (x² + ε h (2s − h))`
-    fn twice_energy<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
+    fn twice_energy<'g>(&self, at: LawState<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
         let [pressed, held] = self.pressed(at, strain);
         at.stiffness(at.number(&self.stiffness))
             * (pressed.squared() + self.centring(at) * held * (2.0 * strain - held))
     }
 
-    fn resistance<'g>(&self, at: At<'_, 'g>, _: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
+    fn resistance<'g>(&self, at: LawState<'_, 'g>, _: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
         self.damping(at) * rate
     }
 
-    fn force<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
+    fn force<'g>(&self, at: LawState<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
         let [pressed, held] = self.pressed(at, strain);
         at.stiffness(at.number(&self.stiffness)) * (pressed + self.centring(at) * held)
             + self.resistance(at, strain, rate)
     }
 
-    fn dissipation<'g>(&self, at: At<'_, 'g>, _: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
+    fn dissipation<'g>(&self, at: LawState<'_, 'g>, _: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
         self.damping(at) * rate.squared()
     }
 }

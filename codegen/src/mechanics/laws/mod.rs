@@ -25,7 +25,7 @@ use crate::symbolic::Expr;
 
 /// When a law is evaluated.
 #[derive(Clone, Copy)]
-pub struct At<'a, 'g> {
+pub struct LawState<'a, 'g> {
     pub model: &'a Model<'g>,
     /// Time of motions on which a law depends, s.
     pub t: Expr<'g>,
@@ -35,15 +35,15 @@ pub struct At<'a, 'g> {
     pub series: Option<[Expr<'g>; 2]>,
 }
 
-impl<'a, 'g> At<'a, 'g> {
+impl<'a, 'g> LawState<'a, 'g> {
     /// In motion, at the present time.
     pub fn now(model: &'a Model<'g>) -> Self {
-        At { model, t: model.t, moving: true, series: None }
+        LawState { model, t: model.t, moving: true, series: None }
     }
 
     /// At rest at a time.
     pub fn rest(model: &'a Model<'g>, t: Expr<'g>) -> Self {
-        At { model, t, moving: false, series: None }
+        LawState { model, t, moving: false, series: None }
     }
 
     pub fn number(&self, value: &chain::Value) -> Expr<'g> {
@@ -74,28 +74,28 @@ impl<'a, 'g> At<'a, 'g> {
 /// The law of a force F that resists the growth of its strain s.
 pub trait Law {
     /// `2E(s)`, twice the energy stored.
-    fn twice_energy<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g>;
+    fn twice_energy<'g>(&self, at: LawState<'_, 'g>, strain: Expr<'g>) -> Expr<'g>;
 
     /// `D(s, ṡ)`, the part of the force that depends on the rate, 0 without one; `D ṡ ≥ 0`.
-    fn resistance<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g>;
+    fn resistance<'g>(&self, at: LawState<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g>;
 
     /// F
-    fn force<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
+    fn force<'g>(&self, at: LawState<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
         elastic_force(self, at, strain) + self.resistance(at, strain, rate)
     }
 
     /// Dissipated power.
-    fn dissipation<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
+    fn dissipation<'g>(&self, at: LawState<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> Expr<'g> {
         self.resistance(at, strain, rate) * rate
     }
 
     /// `∂F/∂s` and `∂F/∂ṡ`.
-    fn slopes<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
+    fn slopes<'g>(&self, at: LawState<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
         derived_slopes(self, at, strain, rate)
     }
 
     /// `∂F/∂ṡ` at rest.
-    fn damping_at_rest<'g>(&self, at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
+    fn damping_at_rest<'g>(&self, at: LawState<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
         self.slopes(at, strain, at.zero())[1]
     }
 
@@ -130,14 +130,19 @@ macro_rules! dispatch {
 point_laws!(dispatch);
 
 /// `∂E/∂s`
-fn elastic_force<'g>(law: &(impl Law + ?Sized), at: At<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
+fn elastic_force<'g>(law: &(impl Law + ?Sized), at: LawState<'_, 'g>, strain: Expr<'g>) -> Expr<'g> {
     let [s, _] = at.model.free_symbols();
     let twice = at.model.graph.derivatives(&[law.twice_energy(at, s)], s)[0];
     at.model.graph.substitute(0.5 * twice, &[(s, strain)])
 }
 
 /// `∂F/∂s` and `∂F/∂ṡ`, by differentiation.
-fn derived_slopes<'g>(law: &(impl Law + ?Sized), at: At<'_, 'g>, strain: Expr<'g>, rate: Expr<'g>) -> [Expr<'g>; 2] {
+fn derived_slopes<'g>(
+    law: &(impl Law + ?Sized),
+    at: LawState<'_, 'g>,
+    strain: Expr<'g>,
+    rate: Expr<'g>,
+) -> [Expr<'g>; 2] {
     let (graph, symbols) = (at.model.graph, at.model.free_symbols());
     let [s, s_dot] = symbols;
     let force = law.force(at, s, s_dot);

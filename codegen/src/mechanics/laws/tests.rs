@@ -1,6 +1,6 @@
 //! Properties of all laws, whatever they state themselves.
 
-use super::{At, Law, derived_slopes, elastic_force, law};
+use super::{Law, LawState, derived_slopes, elastic_force, law};
 use crate::chain::{
     self, Bristle, Clearance, End, Friction, GasSpring, Profile, ProgressiveSpring, Ramp, Rope, RopeStiffness, Spring,
     Stop, Value,
@@ -60,7 +60,7 @@ fn number(expression: Expr<'_>) -> f64 {
 }
 
 /// Every law at every state, in motion at t = 0.7 s and at rest.
-fn at_all_states(mut check: impl FnMut(&str, &dyn Law, At<'_, '_>, [f64; 2])) {
+fn at_all_states(mut check: impl FnMut(&str, &dyn Law, LawState<'_, '_>, [f64; 2])) {
     let (graph, chain) = (Graph::simplifying(), double_pendulum());
     let model = Model::new(&graph, &chain);
     for (name, given) in &laws() {
@@ -69,7 +69,7 @@ fn at_all_states(mut check: impl FnMut(&str, &dyn Law, At<'_, '_>, [f64; 2])) {
                 for moving in [true, false] {
                     // With a compliance as large as that of a spring, and with none.
                     for series in [None, Some([2e-3, 5e-5].map(|x| graph.constant(x)))] {
-                        let at = At { model: &model, t: graph.constant(0.7), moving, series };
+                        let at = LawState { model: &model, t: graph.constant(0.7), moving, series };
                         check(name, law(given), at, [strain, rate]);
                     }
                 }
@@ -88,9 +88,9 @@ fn what_is_in_series_carries_the_same_force() {
             return;
         }
         let c = |x: f64| at.model.graph.constant(x);
-        let with = |compliance: f64| At { series: Some([c(compliance), c(0.0)]), ..at };
+        let with = |compliance: f64| LawState { series: Some([c(compliance), c(0.0)]), ..at };
         let force = number(law.force(with(COMPLIANCE), c(strain), c(0.0)));
-        let alone = At { series: None, ..at };
+        let alone = LawState { series: None, ..at };
         let carried = number(law.force(alone, c(strain - COMPLIANCE * force), c(0.0)));
         assert_close(carried, force, &format!("{name} at {strain}"));
         let energy = |compliance: f64| 0.5 * number(law.twice_energy(with(compliance), c(strain)));

@@ -38,7 +38,7 @@ pub fn of_residual<'g>(
     let n = model.size();
     let mut rows: Vec<_> = slopes.iter().map(|slope| -*slope).collect();
     let (by_q, by_v) = rows.split_at_mut(n * n);
-    let moving = Moving::new(model, kinematics);
+    let moving = MovingPoint::new(model, kinematics);
     let beyond = moving.beyond(model, inertias);
     let columns = moving.columns(kinematics, inertias, &beyond);
     let add = |matrix: &mut [Expr<'g>], i: usize, j: usize, x: Expr<'g>| {
@@ -84,11 +84,12 @@ pub fn factors_of_residual<'g>(
     inertias: &Inertias<'g>,
 ) -> Vec<Expr<'g>> {
     let n = model.size();
-    let moving = Moving::new(model, kinematics);
+    let moving = MovingPoint::new(model, kinematics);
     let beyond = moving.beyond(model, inertias);
     let gravity = model.vector(&model.chain.gravity);
     let vectors = moving.axes.iter().zip(&kinematics.generators).map(|(axis, generator)| {
-        let Axis { generator: Twist { omega, upsilon }, first, before: Motion { velocity, rate }, added, .. } = axis;
+        let Axis { generator: Twist { omega, upsilon }, first, before: MotionOfBody { velocity, rate }, added, .. } =
+            axis;
         let inertia = &inertias.composites[generator.body];
         let Beyond { turning, momentum, required: [force, moment] } = &beyond[generator.body];
         let [ix, iy, iz] = [0, 1, 2].map(|row| inertia.tensor.row(row));
@@ -131,7 +132,7 @@ pub fn factors_of_residual<'g>(
 /// What a rotation vector, whose axes depend on its coordinates, adds to ∂r/∂q: row, column and effort.
 fn within_rotation_vectors<'g>(
     kinematics: &Kinematics<'g>,
-    moving: &Moving<'g>,
+    moving: &MovingPoint<'g>,
     beyond: &[Beyond<'g>],
 ) -> Vec<(usize, usize, Expr<'g>)> {
     let mut added = Vec::new();
@@ -168,22 +169,22 @@ struct Axis<'g> {
     /// Ω̈, and what gravity adds to it.
     second: Twist<'g>,
     /// The motion of the frame before it.
-    before: Motion<'g>,
+    before: MotionOfBody<'g>,
     /// What a change within this frame adds to Ω̈.
     added: Twist<'g>,
 }
 
 /// Motion of a frame in the world: V and V̇.
 #[derive(Clone, Copy)]
-struct Motion<'g> {
+struct MotionOfBody<'g> {
     velocity: Twist<'g>,
     rate: Twist<'g>,
 }
 
 /// The motion of all bodies.
-struct Moving<'g> {
+struct MovingPoint<'g> {
     axes: Vec<Axis<'g>>,
-    bodies: Vec<Motion<'g>>,
+    bodies: Vec<MotionOfBody<'g>>,
 }
 
 /// Everything beyond a joint.
@@ -218,15 +219,15 @@ impl<'g> Column<'g> {
     }
 }
 
-impl<'g> Moving<'g> {
+impl<'g> MovingPoint<'g> {
     /// From the base to the tips.
     fn new(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Self {
         let nothing = still(model);
-        let (mut axes, mut bodies): (Vec<Axis<'g>>, Vec<Motion<'g>>) = (Vec::new(), Vec::new());
+        let (mut axes, mut bodies): (Vec<Axis<'g>>, Vec<MotionOfBody<'g>>) = (Vec::new(), Vec::new());
         let mut curvatures = kinematics.curvatures.iter();
         for body in &model.chain.bodies {
             let mut motion =
-                body.parent.map_or(Motion { velocity: nothing, rate: nothing }, |BodyId(parent)| bodies[parent]);
+                body.parent.map_or(MotionOfBody { velocity: nothing, rate: nothing }, |BodyId(parent)| bodies[parent]);
             for step in &body.path {
                 let own = match step {
                     Step::Translate(_) | Step::Rotate { .. } => continue,
@@ -251,7 +252,7 @@ impl<'g> Moving<'g> {
         for axis in &mut axes {
             axis.second.upsilon = axis.second.upsilon + axis.generator.omega.cross(gravity);
         }
-        Moving { axes, bodies }
+        MovingPoint { axes, bodies }
     }
 
     /// From the tips to the base: sums over everything beyond each body.
@@ -303,8 +304,8 @@ impl<'g> Beyond<'g> {
 }
 
 /// The sums of a single body: `G = V W` and `F = ∫ (ẍ − γ) dm` with `ẍ = (V̇ + V V) x`.
-fn of_body<'g>(model: &Model<'g>, motion: &Motion<'g>, inertia: &WorldInertia<'g>) -> Beyond<'g> {
-    let Motion { velocity: Twist { omega, upsilon }, rate } = *motion;
+fn of_body<'g>(model: &Model<'g>, motion: &MotionOfBody<'g>, inertia: &WorldInertia<'g>) -> Beyond<'g> {
+    let MotionOfBody { velocity: Twist { omega, upsilon }, rate } = *motion;
     let WorldInertia { mass, first, tensor } = *inertia;
     // Σ = ½ tr(I) 1 − I; the upper left of G is [ω]× Σ + υ sᵀ.
     let half = 0.5 * (tensor.at(0, 0) + tensor.at(1, 1) + tensor.at(2, 2));
@@ -322,7 +323,7 @@ fn of_body<'g>(model: &Model<'g>, motion: &Motion<'g>, inertia: &WorldInertia<'g
 
 /// The derivatives of a generator that moves with the frame before it, and changes in this frame with the rates `own`:
 /// `Ω̇ = [V, Ω] + Ω̇'`, `Ω̈ = [V̇, Ω] + [V, Ω̇ + Ω̇'] + Ω̈'`.
-fn axis<'g>(before: Motion<'g>, generator: &Generator<'g>, own: [Twist<'g>; 2]) -> Axis<'g> {
+fn axis<'g>(before: MotionOfBody<'g>, generator: &Generator<'g>, own: [Twist<'g>; 2]) -> Axis<'g> {
     let [own_first, own_second] = own;
     let generator = twist(generator);
     let first = sum(commutator(before.velocity, generator), own_first);

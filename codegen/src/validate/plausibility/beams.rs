@@ -180,7 +180,7 @@ impl Plausibility<'_> {
         let now = |value: &crate::chain::Value| value.at(&self.values);
         let length: f64 = bodies.iter().map(|body| now(&body.length)).sum();
         let mass: f64 = bodies.iter().filter_map(|body| body.inertia.as_ref()).map(|inertia| now(&inertia.mass)).sum();
-        let springs = self.chain.of(Group::Elements).iter().filter(|spring| {
+        let springs = self.chain.forces_of_group(Group::Elements).iter().filter(|spring| {
             let Some(id) = spring.coordinate() else { return false };
             let coordinate = &self.chain.coordinates[id.0];
             // Torsion is about x; its frequencies are higher.

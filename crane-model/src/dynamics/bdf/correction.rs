@@ -17,7 +17,7 @@ pub(super) struct Correction<'a> {
     crane: &'a dyn DynCrane,
     pub system: System<'a>,
     /// Where the system was factorised.
-    factors: Place,
+    factors: FactorisedState,
     /// Time of the next state, s.
     t: f64,
     /// c, s.
@@ -35,7 +35,7 @@ pub(super) struct Correction<'a> {
 }
 
 /// A motion, given in full, and the c of a step.
-struct Place {
+struct FactorisedState {
     t: f64,
     motion: Vec<f64>,
     /// NaN if nothing was factorised.
@@ -51,7 +51,7 @@ impl<'a> Correction<'a> {
         Self {
             crane,
             system: System::new(crane),
-            factors: Place { t: 0.0, motion: zeros(), c: f64::NAN, is_restored: false },
+            factors: FactorisedState { t: 0.0, motion: zeros(), c: f64::NAN, is_restored: false },
             t: 0.0,
             c: f64::NAN,
             past: zeros(),
@@ -78,7 +78,7 @@ impl<'a> Correction<'a> {
         }
         let reuses_factors = self.factors.serve(state.q, self.c) && !self.system.switched(&state);
         if !reuses_factors {
-            let Place { t, motion, c, .. } = &mut self.factors;
+            let FactorisedState { t, motion, c, .. } = &mut self.factors;
             (*t, *c) = (self.t, self.c);
             motion[..n].copy_from_slice(state.q);
             motion[n..2 * n].copy_from_slice(state.v);
@@ -97,7 +97,7 @@ impl<'a> Correction<'a> {
     /// Visits what further steps depend on.
     pub fn visit(&mut self, visit: Visit<'_>) {
         self.system.visit(visit);
-        let Place { t, motion, c, is_restored } = &mut self.factors;
+        let FactorisedState { t, motion, c, is_restored } = &mut self.factors;
         [t, c].into_iter().for_each(&mut *visit);
         visit_numbers(motion, visit);
         *is_restored = c.is_finite();
@@ -123,7 +123,7 @@ impl<'a> Correction<'a> {
     }
 }
 
-impl Place {
+impl FactorisedState {
     /// Whether factors of this place serve for a step with this c that ends at about this pose.
     fn serve(&self, q: &[f64], c: f64) -> bool {
         let is_near = |(q, at): (&f64, &f64)| (q - at).abs() <= NEAR;
@@ -132,6 +132,6 @@ impl Place {
 
     /// Factorises the system of a crane with n coordinates.
     fn factorise(&self, system: &mut System<'_>, n: usize) {
-        system.factorise(&StateAt::of(self.t, n, &self.motion), self.c);
+        system.factorise(&StateAt::from_motion(self.t, n, &self.motion), self.c);
     }
 }

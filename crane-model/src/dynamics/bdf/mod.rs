@@ -82,7 +82,7 @@ pub fn step<const N: usize, C: CraneModel<N>>(
     /// Allowed last increment, relative to 1 m or rad plus the size of the new state.
     const EXACT: f64 = 1e-14;
     let crane = Instance::<N, _>(crane.clone());
-    let mut equations = Equations::new(&crane, References::of(&crane));
+    let mut equations = Equations::new(&crane, References::new(&crane));
     if equations.states() > 0 || equations.has_loops() {
         return Err(NotFinite);
     }
@@ -179,7 +179,7 @@ struct Control {
 impl<'a> Bdf<'a> {
     /// Creates the motion, with the tolerance of the settings.
     pub fn new(crane: &'a dyn DynCrane, settings: &Settings) -> Self {
-        let equations = Equations::new(crane, References::of(crane));
+        let equations = Equations::new(crane, References::new(crane));
         let norm = Norm::with_efforts(crane, &equations.references, SHARE * settings.tolerance);
         let len = equations.len();
         let contraction = Contraction { ratio: 1.0, h: 1.0, age: Contraction::LIFETIME };

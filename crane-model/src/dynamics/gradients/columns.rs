@@ -10,7 +10,7 @@ fn of_motion(n: usize, column: usize) -> Option<usize> {
 
 /// Results of a crane, as a function of a motion.
 fn results(n: usize, t: f64, at: ResultsAt) -> impl FnMut(&dyn DynCrane, &[f64]) -> Vec<f64> {
-    move |crane, motion| at(crane, &StateAt::of(t, n, motion))
+    move |crane, motion| at(crane, &StateAt::from_motion(t, n, motion))
 }
 
 /// Derivatives of the columns at a motion along a direction, in which the motion changes by `change`. `here`: the columns.

@@ -17,7 +17,7 @@ use crate::{
 
 /// A motion of a crane by the W-method, whose steps end where derivatives need it.
 pub(super) fn motion_of(crane: &dyn DynCrane, tolerance: f64) -> Adaptive<'_, Stages<'_>> {
-    let equations = Equations::new(crane, References::of(crane));
+    let equations = Equations::new(crane, References::new(crane));
     let stages = Stages::new(crane, equations.len());
     let norm = Norm::with_efforts(crane, &equations.references, tolerance);
     Adaptive::new(stages, equations, norm).watching_all()

@@ -67,7 +67,7 @@ use passage::Passage;
 
 /// A state of a crane at which its functions are given with slopes.
 #[derive(Clone, Copy, Debug)]
-pub struct At<'a> {
+pub struct MotionAt<'a> {
     /// Time, s.
     pub t: f64,
     /// Pose, m and rad.
@@ -127,16 +127,16 @@ pub trait Slopes: Numbers {
     fn scale(&self, direction: usize) -> f64;
 
     /// Slopes of `A a − e − f + Jᵀ λ`, N and N m.
-    fn residuals(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<f64>]);
+    fn residuals(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [Vec<f64>]);
 
     /// Slopes of φ, φ̇ and `J a + J̇ v` of every equation of the loop joints.
-    fn loops(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<[f64; 3]>]);
+    fn loops(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [Vec<[f64; 3]>]);
 
     /// Slopes of every cylinder.
-    fn cylinders(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<CylinderSlopes>]);
+    fn cylinders(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [Vec<CylinderSlopes>]);
 
     /// Slopes of the numbers of feet.
-    fn feet(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [FeetSlopes]);
+    fn feet(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [FeetSlopes]);
 
     /// Slopes of the prescribed position and rate of every drive at a time; `false` if no motion changes in any direction.
     fn drive_motions(&mut self, t: f64, out: &mut [Vec<[f64; 2]>]) -> bool;
@@ -165,16 +165,16 @@ pub trait PullBacks: Numbers {
     fn after(&self, event: &EventInfo) -> Option<Box<dyn PullBacks>>;
 
     /// Of `A a − e − f + Jᵀ λ`, N and N m.
-    fn residuals(&mut self, at: &At<'_>, weights: &[f64], sum: &mut Covector);
+    fn residuals(&mut self, at: &MotionAt<'_>, weights: &[f64], sum: &mut Covector);
 
     /// Of φ, φ̇ and `J a + J̇ v` of every equation of the loop joints.
-    fn loops(&mut self, at: &At<'_>, weights: &[[f64; 3]], sum: &mut Covector);
+    fn loops(&mut self, at: &MotionAt<'_>, weights: &[[f64; 3]], sum: &mut Covector);
 
     /// Of what cylinders with a valve depend on.
-    fn cylinders(&mut self, at: &At<'_>, weights: &[CylinderSlopes], sum: &mut Covector);
+    fn cylinders(&mut self, at: &MotionAt<'_>, weights: &[CylinderSlopes], sum: &mut Covector);
 
     /// Of the numbers of feet.
-    fn feet(&mut self, at: &At<'_>, weights: &FeetSlopes, sum: &mut Covector);
+    fn feet(&mut self, at: &MotionAt<'_>, weights: &FeetSlopes, sum: &mut Covector);
 
     /// Of the prescribed position and rate of every drive at a time.
     fn drive_motions(&mut self, t: f64, weights: &[[f64; 2]], sum: &mut Covector);

@@ -76,7 +76,7 @@ impl Passage {
             let at = |by: f64| {
                 let mut moved = own.motion.clone();
                 add(&mut moved, by, &own.rates[0]);
-                (own.results)(before, &StateAt::of(t + by, n, &moved))[column]
+                (own.results)(before, &StateAt::from_motion(t + by, n, &moved))[column]
             };
             let change = at(step) - at(-step);
             // The comparison is false for NaN.

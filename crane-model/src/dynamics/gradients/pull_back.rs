@@ -12,7 +12,7 @@
 use nalgebra::DMatrix;
 
 use super::{
-    At, Covector, CylinderSlopes, FeetSlopes, PullBacks,
+    Covector, CylinderSlopes, FeetSlopes, MotionAt, PullBacks,
     rates::{Rates, halves, has_slid},
 };
 use crate::{
@@ -55,7 +55,7 @@ impl Rates<'_> {
                 of_drives[*drive] -= mass.column(*j).iter().zip(&forces).map(|(mass, force)| mass * force).sum::<f64>();
             }
         }
-        let at = At { t, q, v, a: &self.accelerations, multipliers: self.loops.multipliers() };
+        let at = MotionAt { t, q, v, a: &self.accelerations, multipliers: self.loops.multipliers() };
         if !self.force_states.is_empty() {
             let description = self.crane.description();
             let cylinders = if description.has_valves() { description.cylinders.len() } else { 0 };
@@ -99,7 +99,7 @@ impl Rates<'_> {
         let n = self.n;
         let [q, v] = halves(&motion[..2 * n]);
         self.choose_loops(q, v);
-        let at = At { t, q, v, a: &self.zeros, multipliers: &[] };
+        let at = MotionAt { t, q, v, a: &self.zeros, multipliers: &[] };
         let mut gammas = vec![0.0; self.loops.multipliers().len()];
         for part in [1, 0] {
             // What is projected starts from zero: only the weights of the slopes remain.

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::{At, CylinderSlopes, FeetSlopes, Slopes};
+use super::{CylinderSlopes, FeetSlopes, MotionAt, Slopes};
 use crate::{
     StateAt,
     dyn_crane::{DynCrane, DynSystem},
@@ -66,7 +66,7 @@ impl<'a> Rates<'a> {
     /// F at a time.
     pub fn at(&mut self, t: f64, motion: &[f64]) -> Result<Vec<f64>, NotFinite> {
         let n = self.n;
-        let moment = StateAt::of(t, n, motion);
+        let moment = StateAt::from_motion(t, n, motion);
         let v = moment.v;
         self.loops.open(self.crane, &moment, &mut self.accelerations);
         if !self.force_states.is_empty() {
@@ -90,7 +90,7 @@ impl<'a> Rates<'a> {
         let n = self.n;
         self.at(t, motion)?;
         let [q, v] = halves(&motion[..2 * n]);
-        let at = At { t, q, v, a: &self.accelerations, multipliers: self.loops.multipliers() };
+        let at = MotionAt { t, q, v, a: &self.accelerations, multipliers: self.loops.multipliers() };
         slopes.residuals(&at, along, &mut self.residuals);
         if !self.loops.is_empty() {
             slopes.loops(&at, along, &mut self.of_loops);
@@ -163,7 +163,7 @@ impl<'a> Rates<'a> {
         let n = self.n;
         let [q, v] = halves(&motion[..2 * n]);
         self.choose_loops(q, v);
-        let at = At { t, q, v, a: &self.zeros, multipliers: &[] };
+        let at = MotionAt { t, q, v, a: &self.zeros, multipliers: &[] };
         for part in 0..2 {
             slopes.loops(&at, along, &mut self.of_loops);
             for (along, of_loops) in along.iter_mut().zip(&self.of_loops) {

@@ -38,11 +38,11 @@ impl<C: Columns> Changes<C> {
         for which in 0..2 {
             let (of, mut units) = (&self.of[which], [C::zero(); 6]);
             for state in 0..C::STATES {
-                let number = |first: usize| three!(|k| C::of(&of[first + k], state));
-                let m = cross_subtract(three!(|k| C::of(&self.point[k], state)), number(3), number(0));
+                let number = |first: usize| three!(|k| C::lane(&of[first + k], state));
+                let m = cross_subtract(three!(|k| C::lane(&self.point[k], state)), number(3), number(0));
                 for k in 0..3 {
                     units[k].as_mut()[state] = m[k];
-                    units[3 + k].as_mut()[state] = C::of(&of[3 + k], state);
+                    units[3 + k].as_mut()[state] = C::lane(&of[3 + k], state);
                 }
             }
             for k in 0..6 {
@@ -69,7 +69,7 @@ impl<C: Columns> Changes<C> {
                             let of = columns[side][unit].as_ref()[lane];
                             for which in 0..2 {
                                 let sum = &mut sums[which][unit].as_mut()[lane];
-                                *sum = fma(-C::of(&by[which], lane), of, *sum);
+                                *sum = fma(-C::lane(&by[which], lane), of, *sum);
                             }
                         }
                     }
@@ -84,15 +84,15 @@ impl<C: Columns> Changes<C> {
         for which in 0..2 {
             let (of, mut units) = (&mut self.of[which], [C::zero(); 15]);
             for state in 0..C::STATES {
-                let number = |first: usize| three!(|k| C::of(&of[first + k], state));
-                let l = cross_subtract(three!(|k| C::of(&self.point[k], state)), number(6), number(9));
+                let number = |first: usize| three!(|k| C::lane(&of[first + k], state));
+                let l = cross_subtract(three!(|k| C::lane(&self.point[k], state)), number(6), number(9));
                 for k in 0..6 {
-                    units[k].as_mut()[state] = -C::of(&wrenches[which][k], state);
+                    units[k].as_mut()[state] = -C::lane(&wrenches[which][k], state);
                 }
                 for k in 0..3 {
-                    units[6 + k].as_mut()[state] = -C::of(&of[6 + k], state);
+                    units[6 + k].as_mut()[state] = -C::lane(&of[6 + k], state);
                     units[9 + k].as_mut()[state] = -l[k];
-                    units[12 + k].as_mut()[state] = -C::of(&of[12 + k], state);
+                    units[12 + k].as_mut()[state] = -C::lane(&of[12 + k], state);
                 }
             }
             for place in 0..15 {

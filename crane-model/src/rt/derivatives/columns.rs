@@ -36,7 +36,7 @@ pub trait Columns: Copy {
     /// Zero in all lanes.
     fn zero() -> Self::Unit;
     /// A number of all columns in a lane.
-    fn of(number: &Self::Number, lane: usize) -> Self::Lane;
+    fn lane(number: &Self::Number, lane: usize) -> Self::Lane;
     /// A number of the first column, from its states.
     fn number(unit: &Self::Unit) -> Self::Number;
     /// The first numbers of a list; zero where it ends.
@@ -101,7 +101,7 @@ impl Columns for EightColumns {
     }
 
     #[inline(always)]
-    fn of(number: &f64, _: usize) -> f64 {
+    fn lane(number: &f64, _: usize) -> f64 {
         *number
     }
 
@@ -162,7 +162,7 @@ impl Columns for EightStates {
     }
 
     #[inline(always)]
-    fn of(number: &f64x8, lane: usize) -> f64 {
+    fn lane(number: &f64x8, lane: usize) -> f64 {
         number.as_array()[lane]
     }
 
@@ -211,7 +211,7 @@ impl<T: Scalar> Columns for One<T> {
     }
 
     #[inline(always)]
-    fn of(number: &T, _: usize) -> T {
+    fn lane(number: &T, _: usize) -> T {
         *number
     }
 

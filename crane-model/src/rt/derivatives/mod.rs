@@ -98,7 +98,7 @@ fn combine<C: Columns, const COUNT: usize>(
     for state in 0..C::STATES {
         let mut lanes = [C::Lane::constant(0.0); COUNT];
         for k in 0..COUNT {
-            lanes[k] = C::of(numbers[k], state);
+            lanes[k] = C::lane(numbers[k], state);
         }
         unit.as_mut()[state] = make(lanes);
     }
@@ -198,7 +198,7 @@ impl Piece {
             let Some(entry) = swept.get_mut(j * self.stride + unit) else { continue };
             let mut sum = entry[which];
             for lane in 0..C::WIDTH * C::STATES {
-                sum.as_mut()[lane] = fma(C::of(force, lane), x.as_ref()[lane], sum.as_ref()[lane]);
+                sum.as_mut()[lane] = fma(C::lane(force, lane), x.as_ref()[lane], sum.as_ref()[lane]);
             }
             entry[which] = sum;
         }

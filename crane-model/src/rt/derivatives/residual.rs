@@ -210,7 +210,7 @@ impl<'a, C: Columns> Slopes<'a, C> {
                 let row = row.get_mut(first..).unwrap_or_default();
                 let (mut entries, on_path) = (C::load(row), C::load(paths.get(i * n + first..).unwrap_or_default()));
                 for lane in 0..C::WIDTH * C::STATES {
-                    let own = |first: usize| three!(|k| C::of(&own[first + k], lane));
+                    let own = |first: usize| three!(|k| C::lane(&own[first + k], lane));
                     let unit = |first: usize| three!(|k| units[first + k].as_ref()[lane]);
                     let above = dot_add(own(own::OMEGA), unit(0), dot(own(own::UPSILON), unit(3)));
                     let gyration = dot(own(own::HALF_GYRATION), unit(12));

@@ -54,7 +54,7 @@ impl<C: Columns> Joint<C> {
     /// Numbers of the coordinate in a lane.
     #[inline(always)]
     fn three(&self, first: usize, lane: usize) -> [C::Lane; 3] {
-        three!(|k| C::of(&self.own[first + k], lane))
+        three!(|k| C::lane(&self.own[first + k], lane))
     }
 
     /// The wrench before a coordinate from that beyond it, and `g/D` in place of r; what accelerations and rates beyond it cause.
@@ -76,7 +76,7 @@ impl<C: Columns> Joint<C> {
                 if CAUSES {
                     let s = at(6);
                     for (of, by) in [(&mut of_q, by_q), (&mut of_v, by_v)] {
-                        let by = |first: usize| three!(|k| C::of(&by[first + k], lane));
+                        let by = |first: usize| three!(|k| C::lane(&by[first + k], lane));
                         of.as_mut()[lane] = dot_add(m, by(6), dot(f, by(9))) + dot(s, by(12));
                     }
                     set::<C>(&mut carried, 6, lane, scaled_add(own(mass::ANSWER), g, s));
@@ -85,7 +85,7 @@ impl<C: Columns> Joint<C> {
                 if APART {
                     m = cross_add(own(mass::OFFSET), f, m);
                 }
-                x.as_mut()[lane] = C::of(&self.own[mass::RECIPROCAL], lane) * g;
+                x.as_mut()[lane] = C::lane(&self.own[mass::RECIPROCAL], lane) * g;
                 set::<C>(&mut carried, 0, lane, m);
                 set::<C>(&mut carried, 3, lane, f);
             }
@@ -118,7 +118,7 @@ impl<C: Columns> Joint<C> {
                 *moved = scaled_add(own(mass::AXIS), found, *moved);
                 if CAUSES {
                     for (of, by) in [(&mut of_q, by_q), (&mut of_v, by_v)] {
-                        let by = |first: usize| three!(|k| C::of(&by[first + k], lane));
+                        let by = |first: usize| three!(|k| C::lane(&by[first + k], lane));
                         let entry = &mut of.as_mut()[lane];
                         *entry = dot_add(angular, by(0), *entry) + dot(linear, by(3));
                     }

@@ -67,7 +67,7 @@ pub fn book(options: &Book, registry: &Registry, dispatch: Dispatch, out: &mut d
 }
 
 /// A section that a command computes.
-struct Asked {
+struct BookRequest {
     title: &'static str,
     about: &'static str,
     /// The command and its options; why not, if there is nothing to compute.
@@ -91,7 +91,7 @@ impl Binder<'_> {
     }
 
     /// What is asked for, in order.
-    fn asked(&self) -> Vec<Asked> {
+    fn asked(&self) -> Vec<BookRequest> {
         let Self { options: Book { run, chart, fatigue, folder, .. }, chain, .. } = self;
         let when = |holds: bool, command: &str, otherwise| if holds { Ok(command.to_owned()) } else { Err(otherwise) };
         let given = |options: &Option<String>, command: &str, otherwise| {
@@ -101,24 +101,24 @@ impl Binder<'_> {
         let bends = !chain.beams.is_empty();
         let moves = !chain.drives.is_empty();
         vec![
-            Asked {
+            BookRequest {
                 title: "The crane at rest",
                 about: "Where the crane rests with its drives at the beginning of their motions, and what drives, feet and cylinders carry.",
                 command: Ok("statics".to_owned()),
             },
-            Asked {
+            BookRequest {
                 title: "Strength and tipping",
                 about: "Stresses of beams at every place where something acts on them, forces of joints, and how far the crane is from tipping.",
                 command: Ok(
                     ["strength", if bends { " --buckling" } else { "" }, if *run { " --run" } else { "" }].concat()
                 ),
             },
-            Asked {
+            BookRequest {
                 title: "Combinations of weights and loads",
                 about: "The same with the partial factors of every combination of the spec, and which of them governs each part.",
                 command: self.combinations(),
             },
-            Asked {
+            BookRequest {
                 title: "Load chart",
                 about: "The largest load within all limits, pose by pose.",
                 command: given(
@@ -127,17 +127,17 @@ impl Binder<'_> {
                     "it needs the poses: add `--chart \"--range DRIVE=FROM:TO:COUNT\"`",
                 ),
             },
-            Asked {
+            BookRequest {
                 title: "Frequencies and damping",
                 about: "Small vibrations about the pose at rest.",
                 command: Ok("modes".to_owned()),
             },
-            Asked {
+            BookRequest {
                 title: "The manoeuvre",
                 about: "The motion from rest that the spec describes.",
                 command: when(*run, &format!("simulate --out {out}"), "it was not asked for: add `--run`"),
             },
-            Asked {
+            BookRequest {
                 title: "Fatigue",
                 about: "Cycles of stress by the manoeuvre, damage and life.",
                 command: given(
@@ -146,7 +146,7 @@ impl Binder<'_> {
                     "it needs the number of cycles and the detail category: add `--fatigue \"--cycles NUMBER --category STRESS\"`",
                 ),
             },
-            Asked {
+            BookRequest {
                 title: "Sensitivity",
                 about: "What moves the results, and by how much.",
                 command: when(
@@ -204,8 +204,8 @@ impl Binder<'_> {
     }
 
     /// A section by its command.
-    fn computed(&self, asked: Asked) -> Outcome<Section> {
-        let Asked { title, about, command } = asked;
+    fn computed(&self, asked: BookRequest) -> Outcome<Section> {
+        let BookRequest { title, about, command } = asked;
         let section = |command: Vec<String>, content| Section { title, about, command, content };
         let command = match command {
             Ok(command) => command,

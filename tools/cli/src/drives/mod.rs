@@ -27,7 +27,7 @@ pub fn drives(options: &arguments::Drives, registry: &Registry, out: &mut dyn Wr
     }
     let timing = (&options.timing, options.analysis.crane.limits);
     let (_, recorded) = strength::record_manoeuvre(timing, crane, &mut report)?;
-    let duties = Duties::of(crane.description(), &recorded.table);
+    let duties = Duties::new(crane.description(), &recorded.table);
     let needs = parts::needs(&duties, crane.description());
     if needs.is_empty() {
         report.line("drives", "none: nothing in the spec drives the crane", "");

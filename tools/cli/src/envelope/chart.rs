@@ -7,7 +7,7 @@ use crate::figures::wrapped;
 use super::{
     given,
     letters::{legend, letter},
-    rows::Row,
+    rows::ChartRow,
     surface::{Knot, Sheet, Surface, short},
 };
 
@@ -33,7 +33,7 @@ pub struct Chart<'a> {
     /// The poses.
     pub surface: &'a Surface,
     /// Ratings of all poses.
-    pub rows: &'a [Row],
+    pub rows: &'a [ChartRow],
     /// Radii that are asked for, m; round ones if there are none.
     pub asked_radii: &'a [f64],
 }
@@ -44,7 +44,7 @@ pub fn empty() -> [Grid; 2] {
 }
 
 /// The limit that governs a pose, in words.
-pub fn limit_words(row: &Row) -> String {
+pub fn limit_words(row: &ChartRow) -> String {
     match row.governing.each_ref().map(String::as_str) {
         ["", _] => "none up to the maximum load".to_owned(),
         [kind, ""] => kind.to_owned(),
@@ -78,7 +78,7 @@ impl Chart<'_> {
             ["largest load", "least load"].into_iter().flat_map(|load| {
                 let headings =
                     [format!("{load} [{unit}]"), format!("height of {load} [m]"), format!("limit of {load}")];
-                headings.map(|heading| Heading::of(&sheet.label, &heading))
+                headings.map(|heading| Heading::about(&sheet.label, &heading))
             })
         });
         let headings = [Heading::from("radius [m]")].into_iter().chain(of_sheets).collect();

@@ -15,7 +15,7 @@ use super::{
     letters::{legend, letter},
     map::{Map, svg},
     ranges::shown,
-    rows::{Layout, Row},
+    rows::{ChartRow, Layout},
     surface::{Knot, Sheet, Surface, evenly, levels, short},
 };
 
@@ -46,7 +46,7 @@ impl Heading {
     }
 
     /// Below what a figure shows.
-    fn of(&self, what: &str) -> Vec<String> {
+    fn headings(&self, what: &str) -> Vec<String> {
         [what.to_owned()].into_iter().chain(self.0.iter().cloned()).collect()
     }
 }
@@ -57,7 +57,7 @@ pub fn write_chart_figures(
     name: &str,
     asked: &Envelope,
     layout: &Layout,
-    rows: &[Row],
+    rows: &[ChartRow],
     (surface, heading): (Option<&Surface>, &Heading),
 ) -> Outcome<Vec<String>> {
     let load = &layout.columns[layout.load()];
@@ -72,22 +72,23 @@ pub fn write_chart_figures(
     };
     if let Some(surface) = surface {
         let panels = load_chart(surface);
-        let title = heading.of(&format!("Load chart: largest {parameter} [{}]", load.unit));
+        let title = heading.headings(&format!("Load chart: largest {parameter} [{}]", load.unit));
         save("load_chart", crate::figures::titled(&title, &panels, panels.len().min(2)))?;
     }
     if let Some(slewing) = layout.slewing(asked) {
-        let title = heading.of(&format!("Largest {parameter} over the slewing angle [{}]", load.unit));
+        let title = heading.headings(&format!("Largest {parameter} over the slewing angle [{}]", load.unit));
         save("slew_diagram", crate::figures::titled(&title, &[slew_diagram(asked, layout, rows, slewing)], 1))?;
     }
     let varying: Vec<usize> = (0..asked.axes.0.len()).filter(|axis| asked.axes.0[*axis].values.len() > 1).collect();
     if let [.., y, x] = varying[..] {
-        let title = heading.of(&format!("Largest {parameter} [{}], the least over all else that varies", load.unit));
+        let title =
+            heading.headings(&format!("Largest {parameter} [{}], the least over all else that varies", load.unit));
         let governed = map(asked, layout, rows, ([x, y], title), |row| layout.load_of(row), f64::min);
         save("largest_load_map", svg(&governed))?;
-        let used = |row: &Row| row.numbers[layout.utilisation()];
+        let used = |row: &ChartRow| row.numbers[layout.utilisation()];
         if rows.iter().any(|row| used(row).is_finite()) {
             let title = "Utilisation with the crane's own load, the maximum over everything else that varies";
-            let used = map(asked, layout, rows, ([x, y], heading.of(title)), used, f64::max);
+            let used = map(asked, layout, rows, ([x, y], heading.headings(title)), used, f64::max);
             save("utilisation_map", svg(&Map { words: Vec::new(), ..used }))?;
         }
     }
@@ -177,7 +178,7 @@ fn contour(sheet: &Sheet, level: f64) -> Vec<Vec<(f64, f64)>> {
 type Group = (Vec<usize>, Vec<(f64, f64)>);
 
 /// The largest load over the slewing angle, with everything else at some of its values.
-fn slew_diagram(asked: &Envelope, layout: &Layout, rows: &[Row], slewing: usize) -> Panel {
+fn slew_diagram(asked: &Envelope, layout: &Layout, rows: &[ChartRow], slewing: usize) -> Panel {
     let axes = &asked.axes.0;
     let (name, unit, factor) = shown(&axes[slewing], &layout.description);
     let mut groups: Vec<Group> = Vec::new();
@@ -219,9 +220,9 @@ fn slew_diagram(asked: &Envelope, layout: &Layout, rows: &[Row], slewing: usize)
 fn map(
     asked: &Envelope,
     layout: &Layout,
-    rows: &[Row],
+    rows: &[ChartRow],
     ([x, y], mut title): ([usize; 2], Vec<String>),
-    quantity: impl Fn(&Row) -> f64,
+    quantity: impl Fn(&ChartRow) -> f64,
     worst: fn(f64, f64) -> f64,
 ) -> Map {
     let axes = &asked.axes.0;

@@ -16,7 +16,7 @@ use crate::{
 use super::{
     chart::{self, rounded_down},
     ranges::{unit_of, varied},
-    rows::{Layout, Row},
+    rows::{ChartRow, Layout},
 };
 
 /// Key of the table of both charts.
@@ -100,7 +100,7 @@ impl Given {
 
     /// The chart beside ratings at its positions: between two of them, what the crane bears at both; with the best values of what the chart does not
     /// name.
-    pub fn beside(&self, positions: &[Axis], asked: &Envelope, layout: &Layout, rows: &[Row]) -> Grid {
+    pub fn beside(&self, positions: &[Axis], asked: &Envelope, layout: &Layout, rows: &[ChartRow]) -> Grid {
         let columns: Vec<Option<usize>> =
             positions.iter().map(|given| asked.axes.0.iter().position(|axis| axis.varied == given.varied)).collect();
         let columns: Vec<usize> = columns.into_iter().flatten().collect();
@@ -121,10 +121,11 @@ impl Given {
                 .zip(&columns)
                 .map(|(given, column)| neighbours(&asked.axes.0[*column].values, given.values[index]))
                 .collect();
-            let is_near =
-                |row: &&Row| columns.iter().zip(&around).all(|(column, near)| near.contains(&row.numbers[*column]));
+            let is_near = |row: &&ChartRow| {
+                columns.iter().zip(&around).all(|(column, near)| near.contains(&row.numbers[*column]))
+            };
             // What all around bear, by what the chart does not name.
-            let mut found: Vec<(Vec<f64>, &Row)> = Vec::new();
+            let mut found: Vec<(Vec<f64>, &ChartRow)> = Vec::new();
             let axes = 0..asked.axes.0.len();
             for row in rows.iter().filter(is_near) {
                 let others: Vec<f64> =

@@ -43,7 +43,7 @@ use given::{Given, Places};
 pub use identity::facts as facts_of_chart;
 pub use map::{Map, svg as map_svg};
 pub use ranges::{point, read_ranges, shown, varied};
-use rows::{Layout, Row};
+use rows::{ChartRow, Layout};
 
 /// Maximum number of poses: they take some hours.
 const MOST_POSES: usize = 10_000_000;
@@ -69,14 +69,14 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     let seconds = screen::seconds_since(begin);
 
     let mut report = Report::default();
-    let coverage = Coverage::of(crane.as_ref(), &asked.limits);
+    let coverage = Coverage::new(crane.as_ref(), &asked.limits);
     summary::facts(&mut report, &asked, &layout, &coverage, &rows);
     if let Some(seconds) = seconds {
         report.fact("wall time", seconds, "s");
     }
     report.value("parameters", identity::parameters(crane.as_ref(), &asked));
     let mut written = rows::write_rows(&options.folder.out, &name, &asked, &layout, &rows)?;
-    let surface = surface::Surface::of(&asked, &layout, &rows);
+    let surface = surface::Surface::new(&asked, &layout, &rows);
     let chart = surface.as_ref().map(|surface| Chart { surface, rows: &rows, asked_radii: &options.radii });
     let [by_radius, by_place] = chart.as_ref().map_or_else(chart::empty, |chart| [chart.table(), chart.by_place()]);
     if let Some(chart) = &chart {
@@ -127,9 +127,9 @@ fn rows_of(
     registry: &Registry,
     crane: &dyn DynCrane,
     (asked, layout): (&crane_model::envelope::Envelope, &Layout),
-) -> Outcome<(Vec<Row>, Vec<Journal>)> {
+) -> Outcome<(Vec<ChartRow>, Vec<Journal>)> {
     let name = crane.description().name.as_str();
-    let rate = |crane: &dyn DynCrane, name: &str| -> Outcome<(Vec<Row>, Journal)> {
+    let rate = |crane: &dyn DynCrane, name: &str| -> Outcome<(Vec<ChartRow>, Journal)> {
         let file = options.folder.out.join(format!("{name}_envelope.part.csv"));
         let request = Request {
             line: format!("{} {asked:?} {:?}", journal::identity(crane), layout.point),
@@ -144,7 +144,7 @@ fn rows_of(
         let (rows, journal) = rate(crane, name)?;
         return Ok((rows, vec![journal]));
     }
-    let (mut least, mut journals): (Vec<Row>, _) = (Vec::new(), Vec::new());
+    let (mut least, mut journals): (Vec<ChartRow>, _) = (Vec::new(), Vec::new());
     for combination in &layout.combinations {
         let combined = registry.live_combined(crane, combination)?;
         let (mut rows, journal) = rate(&combined, &format!("{name}_{combination}"))?;
@@ -222,7 +222,11 @@ fn points(description: &Description) -> Vec<&str> {
 }
 
 /// Rows of the poses that an interrupted command completed. A piece counts only as a whole.
-fn kept_rows(records: &[Vec<String>], asked: &crane_model::envelope::Envelope, layout: &Layout) -> Vec<Option<Row>> {
+fn kept_rows(
+    records: &[Vec<String>],
+    asked: &crane_model::envelope::Envelope,
+    layout: &Layout,
+) -> Vec<Option<ChartRow>> {
     let mut kept = vec![None; asked.axes.poses()];
     for (pose, row) in records.iter().filter_map(|record| layout.read(record)) {
         if let Some(slot) = kept.get_mut(pose) {
@@ -244,8 +248,8 @@ fn rate(
     crane: &dyn DynCrane,
     threads: Option<NonZeroUsize>,
     journal: &Journal,
-    kept: Vec<Option<Row>>,
-) -> Outcome<Vec<Row>> {
+    kept: Vec<Option<ChartRow>>,
+) -> Outcome<Vec<ChartRow>> {
     let threads = threads.map_or_else(thread::available_parallelism, Ok).map_or(1, NonZeroUsize::get);
     let pieces: Vec<usize> =
         (0..asked.pieces()).filter(|piece| asked.poses_of(*piece).any(|pose| kept[pose].is_none())).collect();
@@ -255,7 +259,7 @@ fn rate(
     let state = Mutex::new((kept, Ok(())));
     let done = |piece: usize, ratings: &[Rating]| {
         let poses = asked.poses_of(piece);
-        let rows: Vec<Row> =
+        let rows: Vec<ChartRow> =
             poses.clone().zip(ratings).map(|(pose, rating)| layout.row(asked, crane, pose, rating)).collect();
         let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
         if state.1.is_ok() {

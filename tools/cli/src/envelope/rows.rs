@@ -19,14 +19,14 @@ use crate::{
 
 /// The rating of a pose.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct ChartRow {
     /// One per column of the layout; NaN where there is none.
     pub numbers: Vec<f64>,
     /// Kind of the governing limit, and what it is a limit of; empty if none governs.
     pub governing: [String; 2],
 }
 
-impl Row {
+impl ChartRow {
     /// The row of a pose as fields of a journal: its number, the limit that governs, all numbers.
     pub fn record(&self, pose: usize) -> Vec<String> {
         let [kind, of] = self.governing.clone();
@@ -92,7 +92,7 @@ impl Layout {
         Self {
             columns,
             point,
-            slew: SlewAxis::of(crane),
+            slew: SlewAxis::new(crane),
             axes: asked.axes.0.len(),
             description,
             combinations: Vec::new(),
@@ -125,14 +125,14 @@ impl Layout {
     }
 
     /// Largest load of a row; 0 if not even the smallest is within the limits.
-    pub fn load_of(&self, row: &Row) -> f64 {
+    pub fn load_of(&self, row: &ChartRow) -> f64 {
         let load = row.numbers[self.load()];
         if load.is_nan() { 0.0 } else { load }
     }
 
     /// Pose by pose, load, place and limit of the row with the smaller load, of which one without a load has the smallest; and of what
     /// the crane's own load does, the worse of both.
-    pub fn least(&self, first: Vec<Row>, second: Vec<Row>) -> Vec<Row> {
+    pub fn least(&self, first: Vec<ChartRow>, second: Vec<ChartRow>) -> Vec<ChartRow> {
         let least = |(a, b)| {
             let (mut row, other) = if self.load_of(&b) < self.load_of(&a) { (b, a) } else { (a, b) };
             let own_load = row.numbers.iter_mut().zip(&other.numbers).enumerate().skip(self.margin());
@@ -148,7 +148,7 @@ impl Layout {
     }
 
     /// The row of a pose.
-    pub fn row(&self, asked: &Envelope, crane: &dyn DynCrane, pose: usize, rating: &Rating) -> Row {
+    pub fn row(&self, asked: &Envelope, crane: &dyn DynCrane, pose: usize, rating: &Rating) -> ChartRow {
         let position: Option<Vector3<f64>> = rating.loaded.as_ref().map(|at| match self.point {
             Some(point) => at.points[point],
             None => at.end,
@@ -168,16 +168,16 @@ impl Layout {
         let governing = rating
             .governing
             .map_or_else(Default::default, |limit: Limit| [limit.kind().to_owned(), limit.location(crane)]);
-        Row { numbers, governing }
+        ChartRow { numbers, governing }
     }
 
     /// A pose and its row from the fields of a journal.
-    pub fn read(&self, record: &[String]) -> Option<(usize, Row)> {
+    pub fn read(&self, record: &[String]) -> Option<(usize, ChartRow)> {
         let [pose, kind, of, numbers @ ..] = record else { return None };
         let numbers = numbers.iter().map(|number| number.parse().ok()).collect::<Option<Vec<f64>>>()?;
         let governing = [kind.clone(), of.clone()];
         let complete = numbers.len() == self.columns.len();
-        Some((pose.parse().ok()?, Row { numbers, governing })).filter(|_| complete)
+        Some((pose.parse().ok()?, ChartRow { numbers, governing })).filter(|_| complete)
     }
 
     /// The axis that slews the crane, if it is one of those that vary.
@@ -194,7 +194,13 @@ pub fn field(number: f64) -> String {
 }
 
 /// Writes all rows as CSV and as arrays; returns the names of the files.
-pub fn write_rows(folder: &Path, name: &str, asked: &Envelope, layout: &Layout, rows: &[Row]) -> Outcome<Vec<String>> {
+pub fn write_rows(
+    folder: &Path,
+    name: &str,
+    asked: &Envelope,
+    layout: &Layout,
+    rows: &[ChartRow],
+) -> Outcome<Vec<String>> {
     let csv = format!("{name}.csv");
     let header = layout.columns.iter().map(ToString::to_string);
     let header = header.chain(["governing", "of"].map(str::to_owned));

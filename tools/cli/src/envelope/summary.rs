@@ -12,7 +12,7 @@ use crate::figures::wrapped;
 use super::{
     chart::SCREEN,
     ranges::shown,
-    rows::{Layout, Row},
+    rows::{ChartRow, Layout},
     surface::short,
 };
 
@@ -20,7 +20,7 @@ use super::{
 const ROOM: usize = SCREEN - 30;
 
 /// The crane, the limits, and the poses that bear the most and the least.
-pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &Coverage, rows: &[Row]) {
+pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &Coverage, rows: &[ChartRow]) {
     let description = &layout.description;
     report.fact("crane", description.name.as_str(), "");
     report.fact_as("spec_hash", "hash of the spec", description.spec_hash.as_str(), "");
@@ -38,7 +38,7 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &
     }
     report.value("limits", limits_of(asked, description, coverage));
     report.fact("poses", rows.len(), "");
-    let by_load = |a: &&Row, b: &&Row| layout.load_of(a).total_cmp(&layout.load_of(b));
+    let by_load = |a: &&ChartRow, b: &&ChartRow| layout.load_of(a).total_cmp(&layout.load_of(b));
     let rated = || rows.iter().filter(|row| row.numbers[layout.load()].is_finite());
     if let (Some(least), Some(greatest)) = (rated().min_by(by_load), rated().max_by(by_load)) {
         for (key, name, row) in
@@ -90,7 +90,7 @@ fn limits_of(asked: &Envelope, description: &Description, coverage: &Coverage) -
 }
 
 /// Load, place, pose and governing limit of a row, for programs.
-fn rating_of(row: &Row, asked: &Envelope, layout: &Layout) -> Value {
+fn rating_of(row: &ChartRow, asked: &Envelope, layout: &Layout) -> Value {
     let pose = layout.columns[..asked.axes.0.len()].iter().zip(&row.numbers);
     let pose = pose.map(|(column, value)| json!({"name": column.name, "value": value, "unit": column.unit}));
     let [kind, of] = row.governing.each_ref().map(|words| (!words.is_empty()).then_some(words));
@@ -106,7 +106,7 @@ fn rating_of(row: &Row, asked: &Envelope, layout: &Layout) -> Value {
 }
 
 /// Load and place of a row; its pose; its governing limit.
-fn row_text(row: &Row, asked: &Envelope, layout: &Layout) -> [String; 3] {
+fn row_text(row: &ChartRow, asked: &Envelope, layout: &Layout) -> [String; 3] {
     let pose = asked.axes.0.iter().zip(&row.numbers).map(|(axis, value)| {
         let (name, unit, factor) = shown(axis, &layout.description);
         let blank = if unit == "°" { "" } else { " " };
@@ -128,7 +128,7 @@ fn row_text(row: &Row, asked: &Envelope, layout: &Layout) -> [String; 3] {
 }
 
 /// Which limits govern in how many poses.
-pub fn governing(asked: &Envelope, layout: &Layout, rows: &[Row]) -> Grid {
+pub fn governing(asked: &Envelope, layout: &Layout, rows: &[ChartRow]) -> Grid {
     let title = "Which limit governs, in how many poses, and for which loads";
     let unit = &layout.description.parameters[asked.load].unit;
     let headers = [

@@ -4,7 +4,7 @@ use crane_model::envelope::{Envelope, Varied};
 
 use super::{
     ranges::shown,
-    rows::{Layout, Row},
+    rows::{ChartRow, Layout},
 };
 
 /// Maximum number of sheets shown.
@@ -44,7 +44,7 @@ pub struct Surface {
 impl Surface {
     /// The poses of an envelope; `None` where no drive moves the load in or out. A knot has the smallest load over all slewing
     /// angles.
-    pub fn of(asked: &Envelope, layout: &Layout, rows: &[Row]) -> Option<Self> {
+    pub fn new(asked: &Envelope, layout: &Layout, rows: &[ChartRow]) -> Option<Self> {
         let axes = &asked.axes.0;
         let slewing = layout.slewing(asked);
         let moves = |axis: &usize| {

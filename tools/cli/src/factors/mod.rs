@@ -77,7 +77,7 @@ pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn 
 }
 
 /// A quantity, and its extremes.
-struct Row {
+struct FactorRow {
     name: String,
     unit: String,
     /// In which it is shown, if not in that of all quantities of its unit.
@@ -87,7 +87,7 @@ struct Row {
     factor: Option<f64>,
 }
 
-impl Row {
+impl FactorRow {
     /// The largest size at rest, and in motion.
     fn sizes(&self) -> [f64; 2] {
         self.extremes.each_ref().map(|extremes| extremes.minimum.abs().max(extremes.maximum.abs()))
@@ -95,15 +95,15 @@ impl Row {
 }
 
 /// All forces, moments, pressures, and the stress of each beam.
-fn rows(crane: &dyn DynCrane, (run, rest): (&Table, &Table), at_rest: &[Instant]) -> Vec<Row> {
+fn rows(crane: &dyn DynCrane, (run, rest): (&Table, &Table), at_rest: &[Instant]) -> Vec<FactorRow> {
     let is_load = |unit: &str| ["N", "N m", "Pa"].contains(&unit);
     let loads = run.columns.iter().filter(|column| column.kind.has_peaks() && is_load(&column.unit));
-    let mut rows: Vec<Row> = loads
-        .map(|Column { name, unit, .. }| Row {
+    let mut rows: Vec<FactorRow> = loads
+        .map(|Column { name, unit, .. }| FactorRow {
             name: name.clone(),
             unit: unit.clone(),
             shown: None,
-            extremes: [rest, run].map(|table| Extremes::of(table, name)),
+            extremes: [rest, run].map(|table| Extremes::of_column(table, name)),
             factor: None,
         })
         .collect();
@@ -122,11 +122,11 @@ fn rows(crane: &dyn DynCrane, (run, rest): (&Table, &Table), at_rest: &[Instant]
             let stress =
                 |instant: &Instant| Some(vec![instant.t, greatest_stress(description, &moduli, beam, instant)?]);
             stresses.rows = instants.iter().filter_map(stress).collect();
-            Extremes::of(&stresses, "stress")
+            Extremes::of_column(&stresses, "stress")
         });
         let known = !stresses.rows.is_empty();
         let (name, unit, shown) = (format!("stress of {beam}"), "Pa".to_owned(), Some(DisplayUnit::Megapascal));
-        known.then_some(Row { name, unit, shown, extremes, factor: None })
+        known.then_some(FactorRow { name, unit, shown, extremes, factor: None })
     });
     rows.extend(of_beams);
     for (index, row) in rows.iter_mut().enumerate() {
@@ -144,7 +144,7 @@ fn greatest_stress(description: &Description, moduli: &[SectionModuli], beam: &s
     own.map(|section| section.stress.equivalent).max_by(f64::total_cmp)
 }
 
-fn table(rows: &[Row]) -> Grid {
+fn table(rows: &[FactorRow]) -> Grid {
     let title = "Dynamic factors: the largest size of each quantity in the run, over its largest size at rest along the same motion; times in s";
     let headers = [
         "quantity",
@@ -158,7 +158,7 @@ fn table(rows: &[Row]) -> Grid {
         "unit",
     ];
     let mut grid = Grid::new("factors", title, &headers);
-    for Row { name, unit, shown, extremes: [rest, run], factor } in rows {
+    for FactorRow { name, unit, shown, extremes: [rest, run], factor } in rows {
         let number = |value| shown.map_or_else(|| Cell::of_unit(value, unit), |shown| Cell::Shown(value, shown));
         grid.row([
             name.as_str().into(),

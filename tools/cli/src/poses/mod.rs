@@ -22,7 +22,7 @@ use crate::{
     selection::{Registry, set_parameters},
     simulate::write_figure,
 };
-use quantities::{Quantities, Row, figure, table};
+use quantities::{PoseRow, Quantities, figure, table};
 
 /// What makes the drives of a crane hold their positions. Positions that `--range` varies become live parameters, so that the crane is
 /// derived once.
@@ -124,7 +124,7 @@ fn parameter_of(description: &Description, drive: usize) -> String {
 }
 
 /// Rows that `--range` asks for.
-pub struct Asked<'a> {
+pub struct PosesRequest<'a> {
     poses: &'a Poses,
     wanted: Quantities,
     analysis: &'a Analysis,
@@ -133,7 +133,7 @@ pub struct Asked<'a> {
 }
 
 /// What an action asks for by `--range`, if it does.
-pub fn asked(action: &Action) -> Option<Asked<'_>> {
+pub fn asked(action: &Action) -> Option<PosesRequest<'_>> {
     /// Number of lowest modes for each pose.
     const LOWEST: usize = 3;
     let (wanted, analysis, file) = match action {
@@ -145,19 +145,19 @@ pub fn asked(action: &Action) -> Option<Asked<'_>> {
         _ => return None,
     };
     let poses = action.poses().filter(|poses| !poses.ranges.is_empty())?;
-    Some(Asked { poses, wanted, analysis, file: file.as_deref() })
+    Some(PosesRequest { poses, wanted, analysis, file: file.as_deref() })
 }
 
 /// Computes the rows of `--range` and writes them.
-pub fn rows(asked: &Asked<'_>, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
-    let Asked { poses, wanted, analysis, file } = asked;
+pub fn rows(asked: &PosesRequest<'_>, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let PosesRequest { poses, wanted, analysis, file } = asked;
     let crane = analysis.crane.open(registry)?;
     let description = crane.description();
     let axes = read_ranges(&poses.ranges, description)?;
     let point = envelope::point(poses.point.as_deref(), description)?;
-    let subject = quantities::Subject::new(crane.as_ref(), &axes, point, *wanted, registry);
+    let subject = quantities::PosedCrane::new(crane.as_ref(), &axes, point, *wanted, registry);
     let bar = batches(axes.poses());
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<PoseRow> = Vec::new();
     for pose in 0..axes.poses() {
         rows.push(subject.row(&settings(&axes, pose, description)?)?);
         bar.inc(1);

@@ -40,7 +40,7 @@ struct Column {
 }
 
 /// What all rows have in common.
-pub struct Subject<'a> {
+pub struct PosedCrane<'a> {
     crane: &'a dyn DynCrane,
     /// The crane with rigid beams and no other difference, if there is one.
     rigid: Option<LiveCrane>,
@@ -53,7 +53,7 @@ pub struct Subject<'a> {
 }
 
 /// A pose: values of the axes, of the quantities in SI, and how statics ended.
-pub struct Row {
+pub struct PoseRow {
     settings: Vec<f64>,
     values: Vec<Option<f64>>,
     status: String,
@@ -62,14 +62,14 @@ pub struct Row {
     exceeded: BTreeSet<(&'static str, String)>,
 }
 
-impl Row {
+impl PoseRow {
     /// Whether the crane rests in a stable equilibrium.
     pub fn stands(&self) -> bool {
         self.stable
     }
 }
 
-impl<'a> Subject<'a> {
+impl<'a> PosedCrane<'a> {
     /// The crane with its rigid twin.
     pub fn new(
         crane: &'a dyn DynCrane,
@@ -88,7 +88,7 @@ impl<'a> Subject<'a> {
         let varies = |index| axes.0.iter().any(|axis| axis.varied == Varied::Parameter(index));
         let load = only_mass(description).filter(|load| !varies(*load) && matches!(wanted, Quantities::Statics));
         let load = load.map(|load| (load, range_of_loads(crane, load, None)[0]));
-        Self { crane, rigid, load, axes, point, slew: SlewAxis::of(crane), wanted }
+        Self { crane, rigid, load, axes, point, slew: SlewAxis::new(crane), wanted }
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -120,14 +120,14 @@ impl<'a> Subject<'a> {
     }
 
     /// The row of a pose.
-    pub fn row(&self, settings: &[(usize, f64)]) -> Outcome<Row> {
+    pub fn row(&self, settings: &[(usize, f64)]) -> Outcome<PoseRow> {
         let crane = posed(self.crane, settings)?;
         let crane = crane.as_ref();
         let equilibrium = crane.equilibrium(&statics::Settings::default());
         let (stable, status) = (equilibrium.is_stable(), equilibrium.status.name().to_owned());
         let settings: Vec<f64> = settings.iter().map(|(_, value)| *value).collect();
         if !stable {
-            return Ok(Row {
+            return Ok(PoseRow {
                 settings,
                 values: vec![None; self.columns().len()],
                 status,
@@ -147,7 +147,7 @@ impl<'a> Subject<'a> {
             Quantities::Strength => values.extend(of_strength(crane, q)),
             Quantities::Modes(count) => values.extend(of_modes(crane, &q, count)?),
         }
-        Ok(Row { settings, values, status, stable, exceeded })
+        Ok(PoseRow { settings, values, status, stable, exceeded })
     }
 
     /// Where the point is that is shown.
@@ -185,7 +185,7 @@ impl<'a> Subject<'a> {
     }
 
     /// What must not be overlooked.
-    pub fn cautions(&self, rows: &[Row]) -> Vec<String> {
+    pub fn cautions(&self, rows: &[PoseRow]) -> Vec<String> {
         let mut cautions = Vec::new();
         let fallen = rows.iter().filter(|row| !row.stable).count();
         if fallen > 0 {
@@ -255,7 +255,7 @@ fn of_modes(crane: &dyn DynCrane, q: &[f64], count: usize) -> Outcome<Vec<Option
 }
 
 /// The rows as a table.
-pub fn table(subject: &Subject<'_>, rows: &[Row]) -> Grid {
+pub fn table(subject: &PosedCrane<'_>, rows: &[PoseRow]) -> Grid {
     let axes = subject.headings();
     let columns = subject.columns();
     let named = |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
@@ -277,12 +277,12 @@ pub fn table(subject: &Subject<'_>, rows: &[Row]) -> Grid {
 }
 
 /// A panel for every quantity over the only axis; nothing for several axes.
-pub fn figure(subject: &Subject<'_>, rows: &[Row]) -> Vec<Panel> {
+pub fn figure(subject: &PosedCrane<'_>, rows: &[PoseRow]) -> Vec<Panel> {
     let headings = subject.headings();
     let [(name, unit, angle)] = headings.as_slice() else { return Vec::new() };
     let across = |value: f64| if *angle { value.to_degrees() } else { value };
     let panel = |(index, column): (usize, Column)| {
-        let point = |row: &Row| {
+        let point = |row: &PoseRow| {
             let value = row.values[index]?;
             Some((across(row.settings[0]), Cell::shown(value, column.unit).number()?))
         };

@@ -243,7 +243,7 @@ fn loaded(options: &Sensitivity, crane: &LiveCrane) -> Outcome<Loaded> {
         limits.load = masses.next().filter(|_| masses.next().is_none());
     }
     let asked = envelope::within(&limits, Axes::default(), crane)?;
-    let largest = LargestLoad::of(crane, &asked).map_err(|none| no_load(&none, crane, &asked))?;
+    let largest = LargestLoad::new(crane, &asked).map_err(|none| no_load(&none, crane, &asked))?;
     Ok((largest, asked))
 }
 
@@ -264,7 +264,7 @@ fn facts_of_load(
     let info = &description.parameters[asked.load];
     let point = envelope::point(options.point.as_deref(), description)?;
     let at = point.map_or(largest.condition.end, |point| largest.condition.points[point]);
-    let radius = SlewAxis::of(crane).radius(&at);
+    let radius = SlewAxis::new(crane).radius(&at);
     report.line(format!("largest {}", info.name), largest.load, info.unit.as_str());
     report.line("limited by", largest.words(crane), "");
     report.line("at a radius of", format!("{radius:.2}"), "m");

@@ -53,7 +53,7 @@ pub fn sensitivity(
         from: None,
         start: Vec::new(),
     };
-    let start = Start::of(crane)?;
+    let start = Start::new(crane)?;
     let settings = crane_model::dynamics::Settings { audit: false, ..timing.settings(crane, &start, METHOD)? };
     let bar = progress(settings.duration);
     let proceed = &mut |t: f64| {

@@ -62,7 +62,7 @@ pub fn matrix(changes: &Changes, all: bool) -> Grid {
     };
     let names: Vec<&str> = numbers.iter().map(|&place| changes.numbers[place].label.as_str()).collect();
     let labels = short_labels(&names);
-    let labels = labels.iter().map(|label| Heading::of(label, "value"));
+    let labels = labels.iter().map(|label| Heading::about(label, "value"));
     let value = if changes.is_of_run() { "in the run" } else { "at rest" };
     let headings = ["output".into(), value.into()].into_iter().chain(labels).chain(["unit".into(), "where".into()]);
     let mut grid = Grid::with_headings("", title, headings.collect());

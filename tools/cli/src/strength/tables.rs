@@ -158,6 +158,6 @@ pub fn extremes_of_sections(description: &Description, at_rest: &[f64], table: &
 /// Extremes of the components of a cut.
 fn extremes(description: &Description, cut: Cut, table: &Table) -> Vec<(&'static str, &'static str, Extremes)> {
     let Some((prefix, components)) = prefix(description, cut) else { return Vec::new() };
-    let of = |(component, unit)| (component, unit, Extremes::of(table, &format!("{prefix}_{component}")));
+    let of = |(component, unit)| (component, unit, Extremes::of_column(table, &format!("{prefix}_{component}")));
     components.into_iter().zip(UNITS).map(of).collect()
 }

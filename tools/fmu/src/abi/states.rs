@@ -4,7 +4,7 @@ use std::ptr;
 
 use super::unit::{Pointer, Unit};
 use super::{array, array_mut};
-use crate::instance::{Fault, State};
+use crate::instance::{Fault, SavedState};
 
 fn no_state() -> Fault {
     Fault::Error("no state was given".to_owned())
@@ -18,7 +18,7 @@ pub(super) unsafe fn keep(unit: &Unit, state: *mut Pointer) -> Result<(), Fault>
     // SAFETY: as the caller promises.
     let pointer = unsafe { state.as_mut() }.ok_or_else(no_state)?;
     // SAFETY: as the caller promises.
-    match unsafe { pointer.cast::<State>().as_mut() } {
+    match unsafe { pointer.cast::<SavedState>().as_mut() } {
         Some(kept) => *kept = unit.instance.state(),
         None => *pointer = Box::into_raw(Box::new(unit.instance.state())).cast(),
     }
@@ -31,7 +31,7 @@ pub(super) unsafe fn keep(unit: &Unit, state: *mut Pointer) -> Result<(), Fault>
 /// The state was made here, or is null.
 pub(super) unsafe fn restore(unit: &mut Unit, state: Pointer) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
-    unit.instance.set_state(unsafe { state.cast::<State>().as_ref() }.ok_or_else(no_state)?)?;
+    unit.instance.set_state(unsafe { state.cast::<SavedState>().as_ref() }.ok_or_else(no_state)?)?;
     unit.last = unit.instance.time();
     Ok(())
 }
@@ -44,7 +44,7 @@ pub(super) unsafe fn free(state: *mut Pointer) {
     // SAFETY: as the caller promises.
     unsafe {
         if let Some(pointer) = state.as_mut().filter(|pointer| !pointer.is_null()) {
-            drop(Box::from_raw(pointer.cast::<State>()));
+            drop(Box::from_raw(pointer.cast::<SavedState>()));
             *pointer = ptr::null_mut();
         }
     }
@@ -56,7 +56,7 @@ pub(super) unsafe fn free(state: *mut Pointer) {
 /// The state was made here, or is null; there is room for a number at `size`, or it is null.
 pub(super) unsafe fn measure(state: Pointer, size: *mut usize) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
-    let (state, size) = unsafe { (state.cast::<State>().as_ref(), size.as_mut()) };
+    let (state, size) = unsafe { (state.cast::<SavedState>().as_ref(), size.as_mut()) };
     *size.ok_or_else(no_state)? = state.ok_or_else(no_state)?.bytes().len();
     Ok(())
 }
@@ -67,7 +67,8 @@ pub(super) unsafe fn measure(state: Pointer, size: *mut usize) -> Result<(), Fau
 /// The state was made here, or is null; there is room for `size` bytes.
 pub(super) unsafe fn to_bytes(state: Pointer, bytes: *mut u8, size: usize) -> Result<(), Fault> {
     // SAFETY: as the caller promises.
-    let (state, bytes) = unsafe { (state.cast::<State>().as_ref().ok_or_else(no_state)?, array_mut(bytes, size)?) };
+    let (state, bytes) =
+        unsafe { (state.cast::<SavedState>().as_ref().ok_or_else(no_state)?, array_mut(bytes, size)?) };
     let saved = state.bytes();
     let Some(target) = bytes.get_mut(..saved.len()) else {
         return Err(Fault::Error(format!("{size} bytes are too few: the state takes {}", saved.len())));

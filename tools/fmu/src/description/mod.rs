@@ -151,7 +151,7 @@ impl<'a> Subject<'a> {
     }
 
     fn write_experiment(&self, xml: &mut Xml) {
-        let Settings { duration, output, tolerance, .. } = Settings::of(self.crane.description());
+        let Settings { duration, output, tolerance, .. } = Settings::from_description(self.crane.description());
         xml.leaf(
             "DefaultExperiment",
             &[

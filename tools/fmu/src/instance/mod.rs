@@ -22,7 +22,7 @@ use crate::variables::{self, Source, Variable};
 use derivatives::Jacobian;
 pub use fault::Fault;
 use state::Moment;
-pub use state::State;
+pub use state::SavedState;
 
 /// How far an importer has come with a unit.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -100,7 +100,11 @@ impl Instance {
             conditions,
             marks: None,
             inputs,
-            settings: Settings { duration: f64::INFINITY, most_steps: usize::MAX, ..Settings::of(crane.description()) },
+            settings: Settings {
+                duration: f64::INFINITY,
+                most_steps: usize::MAX,
+                ..Settings::from_description(crane.description())
+            },
             crane,
             live,
             variables,
@@ -187,7 +191,7 @@ impl Instance {
     pub fn reset(&mut self) {
         self.parameters.clone_from(&self.first);
         self.inputs.fill(None);
-        self.settings.tolerance = Settings::of(self.crane.description()).tolerance;
+        self.settings.tolerance = Settings::from_description(self.crane.description()).tolerance;
         (self.begin, self.is_current) = (0.0, false);
         self.phase = Phase::Created;
         (self.moment, self.motion, self.marks) = (None, None, None);
@@ -238,9 +242,9 @@ impl Instance {
         if self.moment.is_none() {
             let crane = self.crane.as_ref();
             let Start { state: InitialState { mut q, mut v, .. }, rests, .. } =
-                Start::of(crane).map_err(|failed| Fault::Error(format!("{failed}; {}", failed.advice())))?;
+                Start::new(crane).map_err(|failed| Fault::Error(format!("{failed}; {}", failed.advice())))?;
             if rests && self.begin != 0.0 {
-                let equilibrium = statics::Problem::of(crane).at_time(self.begin).from(&q).solve();
+                let equilibrium = statics::Problem::new(crane).at_time(self.begin).from(&q).solve();
                 q = Start::at(crane, &equilibrium).map_err(Fault::error)?.state.q;
             }
             crane.prescribe(self.begin, &mut q, &mut v);

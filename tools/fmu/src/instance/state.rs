@@ -8,7 +8,7 @@ const BYTES: usize = size_of::<f64>();
 
 /// Everything that determines the crane's future motion.
 #[derive(Clone, Debug, PartialEq)]
-pub struct State {
+pub struct SavedState {
     /// The token of the crane's variables: no other crane has states like it.
     pub(super) token: String,
     pub(super) parameters: Vec<f64>,
@@ -38,7 +38,7 @@ impl Moment {
     }
 }
 
-impl State {
+impl SavedState {
     /// The state as bytes: the token; then numbers, which are parameters; inputs, NaN if not set; marks of events, infinite before
     /// the first step; and, if known, time, pose, rates and
     /// states of forces.
@@ -54,17 +54,17 @@ impl State {
 
 impl Instance {
     /// The state, to return to later.
-    pub fn state(&self) -> State {
+    pub fn state(&self) -> SavedState {
         let Self { token, parameters, inputs, marks, moment, .. } = self;
         let (token, parameters, events) = (token.clone(), parameters.clone(), self.events());
-        State { token, parameters, events, inputs: inputs.clone(), marks: marks.clone(), moment: moment.clone() }
+        SavedState { token, parameters, events, inputs: inputs.clone(), marks: marks.clone(), moment: moment.clone() }
     }
 
     /// Returns to a state.
     ///
     /// # Errors
     /// It is that of another crane.
-    pub fn set_state(&mut self, state: &State) -> Result<(), Fault> {
+    pub fn set_state(&mut self, state: &SavedState) -> Result<(), Fault> {
         if state.token != self.token {
             let name = &self.crane.description().name;
             return Err(Fault::Error(format!("the state is that of another crane, not of {name}")));
@@ -79,7 +79,7 @@ impl Instance {
     }
 
     /// A state of this crane from its bytes; `None` if they are those of another crane.
-    pub fn state_of(&self, bytes: &[u8]) -> Option<State> {
+    pub fn state_of(&self, bytes: &[u8]) -> Option<SavedState> {
         let (chunks, []) = bytes.strip_prefix(self.token.as_bytes())?.as_chunks::<BYTES>() else { return None };
         let numbers: Vec<f64> = chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
         let (parameters, rest) = numbers.split_at_checked(self.parameters.len())?;
@@ -97,6 +97,6 @@ impl Instance {
             }
             _ => return None,
         };
-        Some(State { token: self.token.clone(), parameters: parameters.to_vec(), events, inputs, marks, moment })
+        Some(SavedState { token: self.token.clone(), parameters: parameters.to_vec(), events, inputs, marks, moment })
     }
 }

@@ -8,7 +8,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use super::loops;
-use crate::instruction::{Instruction, Operand, Place, Register};
+use crate::instruction::{Instruction, Location, Operand, Register};
 use crate::line::Lanes;
 use crate::operations::{Kind, Signs};
 
@@ -184,7 +184,7 @@ impl Encoder {
     }
 
     /// The operand of a place in the frame.
-    fn memory(&self, place: Place) -> Last {
+    fn memory(&self, place: Location) -> Last {
         let window = place.at / WINDOW;
         if let Some(register) = self.moving.get(&place.step) {
             return Last::Memory(*register, place.at * self.stride());

@@ -104,7 +104,8 @@ fn study(
     let bar = progress(0.0);
     bar.set_message("reference");
     let poses = manoeuvre(crane, &start, POSES)?;
-    let safe = Bound::of(&poses, Method::Rk4).map_or(base.output, |bound| SAFE * bound.limit.step).min(base.output);
+    let safe =
+        Bound::smallest(&poses, Method::Rk4).map_or(base.output, |bound| SAFE * bound.limit.step).min(base.output);
     let reference = reference(crane, &start.q, &base, safe)?;
     let repeats = if options.quick { 1 } else { REPEATS };
     let points = series(crane, &start.q, &base, &reference.solution.trace, safe, options.quick, &bar);
@@ -139,7 +140,7 @@ fn study(
             variant(crane.as_ref(), &self::start(crane.as_ref())?, &base, count, repeats)
         });
         let variants: Vec<Variant> = variants.collect::<Outcome<_>>()?;
-        if let Some(limit) = Limit::of(&variants) {
+        if let Some(limit) = Limit::new(&variants) {
             let grids = [limit.advice(&variants, base.duration), limit.table(&variants), limit.runs(&variants)];
             found.grids.extend(grids);
             found.figures.push(("sections", figures::sections(&variants, &limit)));
@@ -152,12 +153,12 @@ fn study(
 
 /// Where runs start: at rest in equilibrium, or at the guess if there is no drive to move the crane out of equilibrium.
 fn start(crane: &dyn DynCrane) -> Outcome<Start> {
-    if crane.description().drives.is_empty() { Ok(Start::guess(crane)) } else { Ok(Start::of(crane)?) }
+    if crane.description().drives.is_empty() { Ok(Start::guess(crane)) } else { Ok(Start::new(crane)?) }
 }
 
 /// The run to be studied.
 fn base(options: &WorkPrecision, description: &Description) -> Outcome<Settings> {
-    let defaults = Settings::of(description);
+    let defaults = Settings::from_description(description);
     let duration = options.duration.unwrap_or(defaults.duration);
     if !(duration.is_finite() && duration > 0.0) {
         return Err(Problem::usage(

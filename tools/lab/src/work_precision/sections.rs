@@ -62,7 +62,7 @@ pub fn variant(
     sections: usize,
     repeats: usize,
 ) -> Outcome<Variant> {
-    let equilibrium = Start::of(crane)?;
+    let equilibrium = Start::new(crane)?;
     let small = crane.small_motions_at(&equilibrium.q);
     let modes = undamped(&small).map_err(|error: NoModes| Problem::from(error))?;
     let frequencies = modes.iter().filter_map(crane_model::modes::Mode::frequency).take(FREQUENCIES).collect();
@@ -108,7 +108,7 @@ pub struct Limit {
 
 impl Limit {
     /// `x∞ = x_n + (x_n − x_m)/((n/m)² − 1)` of the finest, n, and the next coarser, m.
-    pub fn of(variants: &[Variant]) -> Option<Self> {
+    pub fn new(variants: &[Variant]) -> Option<Self> {
         let [.., before, finest] = variants else { return None };
         let weight = ((finest.sections as f64 / before.sections as f64).powi(2) - 1.0).recip();
         let number = |(a, b): (&f64, &f64)| a + weight * (a - b);

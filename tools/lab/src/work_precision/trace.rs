@@ -53,7 +53,7 @@ impl Trace {
     }
 
     /// The run of a crane from t, q and v of every result.
-    pub fn of(crane: &dyn DynCrane, samples: &[(f64, Vec<f64>, Vec<f64>)]) -> Self {
+    pub fn new(crane: &dyn DynCrane, samples: &[(f64, Vec<f64>, Vec<f64>)]) -> Self {
         let energies: Vec<Energies> = samples.iter().map(|(t, q, v)| crane.energies_at(*t, q, v)).collect();
         Self {
             path: samples.iter().map(|(_, q, _)| Self::points(crane, q)).collect(),
@@ -157,5 +157,5 @@ pub fn timed(crane: &dyn DynCrane, start: &[f64], settings: &Settings, repeats: 
         }
     };
     walls.sort_unstable_by(f64::total_cmp);
-    Ok(Timed { trace: Trace::of(crane, &samples), run, wall: walls[walls.len() / 2] })
+    Ok(Timed { trace: Trace::new(crane, &samples), run, wall: walls[walls.len() / 2] })
 }

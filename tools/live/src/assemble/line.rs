@@ -21,7 +21,7 @@ pub type Value = usize;
 
 /// A function as a straight line.
 #[derive(Debug, Default)]
-pub struct Line {
+pub struct AssembledLine {
     /// The first values, which are available before a call.
     pub fixed: Vec<Fixed>,
     /// The next values, in sequence, which are read at the start of a call.
@@ -98,10 +98,10 @@ impl Step {
 }
 
 /// Code under construction.
-struct Writer<'a> {
+struct LineWriter<'a> {
     graph: &'a Graph<'a>,
     selection: &'a Selection,
-    line: Line,
+    line: AssembledLine,
     fixed: FxHashMap<Key, Value>,
     /// Values of every node and its negative.
     values: Vec<[Option<Value>; 2]>,
@@ -124,13 +124,13 @@ pub enum Order {
     Results,
 }
 
-impl Line {
+impl AssembledLine {
     /// The line of a selection; `entries` are the results, of `outputs`.
-    pub fn of(graph: &Graph, selection: &Selection, outputs: &[ExprId], entries: &[Entry], order: Order) -> Self {
-        let mut writer = Writer {
+    pub fn new(graph: &Graph, selection: &Selection, outputs: &[ExprId], entries: &[Entry], order: Order) -> Self {
+        let mut writer = LineWriter {
             graph,
             selection,
-            line: Line { results: entries.len(), ..Line::default() },
+            line: AssembledLine { results: entries.len(), ..AssembledLine::default() },
             fixed: FxHashMap::default(),
             values: vec![[None; 2]; graph.program.operations.len()],
         };
@@ -142,7 +142,7 @@ impl Line {
         writer.write_fixed(&copied);
         writer.write_inputs();
         writer.write_angles();
-        let mut copies = Copies::of(&writer, &copied);
+        let mut copies = Copies::new(&writer, &copied);
         let write = |id| {
             writer.write(id);
             copies.note(&mut writer, id);
@@ -156,7 +156,7 @@ impl Line {
     }
 }
 
-impl Writer<'_> {
+impl LineWriter<'_> {
     fn value(&mut self) -> Value {
         self.line.values += 1;
         self.line.values - 1
@@ -368,7 +368,7 @@ struct Copies {
 }
 
 impl Copies {
-    fn of(writer: &Writer, copied: &[Operand]) -> Self {
+    fn new(writer: &LineWriter, copied: &[Operand]) -> Self {
         let mut copies = Copies { waiting: FxHashMap::default(), known: vec![] };
         for (place, operand) in copied.iter().enumerate() {
             match (writer.fixed_value(*operand), *operand) {
@@ -383,7 +383,7 @@ impl Copies {
     }
 
     /// The values of a node are available.
-    fn note(&mut self, writer: &mut Writer, id: ExprId) {
+    fn note(&mut self, writer: &mut LineWriter, id: ExprId) {
         let Some(places) = self.waiting.remove(&id) else { return };
         for (places, value) in places.into_iter().zip(writer.values[id.index()]) {
             let Some(value) = value else { continue };
@@ -394,7 +394,7 @@ impl Copies {
         }
     }
 
-    fn flush(&mut self, writer: &mut Writer) {
+    fn flush(&mut self, writer: &mut LineWriter) {
         writer.line.steps.append(&mut self.known);
     }
 }

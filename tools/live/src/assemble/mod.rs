@@ -16,7 +16,7 @@ use crane_codegen::symbolic::ExprId;
 
 use crate::bytecode::Code;
 use crate::layout::layout;
-use line::{Line, Order};
+use line::{AssembledLine, Order};
 use select::Selection;
 
 /// A product of a function needs more registers than narrow bytecode can name.
@@ -32,8 +32,8 @@ pub fn assemble(program: &Program, constants: &Constants, function: &Function) -
     let fused = fuse(program, constants, &function.outputs);
     let graph = Graph { program, constants: Some(constants), fused };
     let entries = layout(&function.shape);
-    let selection = Selection::of(&graph, &function.outputs);
-    let line = |order| Line::of(&graph, &selection, &function.outputs, &entries, order);
+    let selection = Selection::new(&graph, &function.outputs);
+    let line = |order| AssembledLine::new(&graph, &selection, &function.outputs, &entries, order);
     let code = registers::assign(&line(Order::Derivation));
     if code.is_wide() { registers::assign(&line(Order::Results)) } else { code }
 }
@@ -44,8 +44,8 @@ pub fn assemble_constants(program: &Program, constants: &Constants) -> Code {
     let graph = Graph { program, constants: None, fused: vec![None; program.operations.len()] };
     let outputs = &constants.stored;
     let entries: Vec<_> = (0..outputs.len()).map(crate::layout::Entry::Slot).collect();
-    let selection = Selection::of(&graph, outputs);
-    registers::assign(&Line::of(&graph, &selection, outputs, &entries, Order::Derivation))
+    let selection = Selection::new(&graph, outputs);
+    registers::assign(&AssembledLine::new(&graph, &selection, outputs, &entries, Order::Derivation))
 }
 
 /// A program, and its expressions that need no separate operation.
@@ -88,7 +88,7 @@ mod tests {
         let program = mechanics::derive(crane.chain(), Analyses { statics: true, ..Analyses::ALL });
         for id in [FunctionId::TangentStiffness, FunctionId::ForwardDynamics, FunctionId::Transforms] {
             let alone = program.alone(program.function(id).unwrap());
-            let narrow = assemble(&alone, &Constants::of(&alone), &alone.functions[0]);
+            let narrow = assemble(&alone, &Constants::new(&alone), &alone.functions[0]);
             let Instructions::Narrow(instructions) = &narrow.instructions else { panic!("{id:?} is wide") };
             let wide = instructions
                 .iter()
@@ -118,13 +118,13 @@ mod tests {
         let function = program.function(FunctionId::TangentStiffness).unwrap();
         let alone = program.alone(function);
         let function = &alone.functions[0];
-        let constants = Constants::of(&alone);
+        let constants = Constants::new(&alone);
         let fused = fuse(&alone, &constants, &function.outputs);
         let graph = Graph { program: &alone, constants: Some(&constants), fused };
-        let selection = Selection::of(&graph, &function.outputs);
+        let selection = Selection::new(&graph, &function.outputs);
         let entries = layout(&function.shape);
         let [derived, by_result] = [Order::Derivation, Order::Results].map(|order| {
-            let line = Line::of(&graph, &selection, &function.outputs, &entries, order);
+            let line = AssembledLine::new(&graph, &selection, &function.outputs, &entries, order);
             let arguments = Arguments { q: &q, v: &q, a: &q, positions: &q, ..Arguments::none() };
             results(&registers::assign(&line), &arguments)
         });

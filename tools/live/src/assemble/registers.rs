@@ -1,10 +1,10 @@
 //! Registers by linear scan: a value takes the register that was released last, which is still in the first-level cache.
 
-use super::line::{Line, Step, Value};
+use super::line::{AssembledLine, Step, Value};
 use crate::bytecode::{Code, Instructions, Kind, Segment, Store, WideInstruction};
 
 /// The bytecode of a line.
-pub fn assign(line: &Line) -> Code {
+pub fn assign(line: &AssembledLine) -> Code {
     let last_reads = last_reads(line);
     let mut registers = Registers { of: vec![0; line.values], free: vec![], count: line.fixed.len() };
     for value in 0..line.fixed.len() {
@@ -79,7 +79,7 @@ pub fn assign(line: &Line) -> Code {
 }
 
 /// For every value, the last step that reads it.
-fn last_reads(line: &Line) -> Vec<Option<usize>> {
+fn last_reads(line: &AssembledLine) -> Vec<Option<usize>> {
     let mut last = vec![None; line.values];
     for (place, step) in line.steps.iter().enumerate() {
         for value in step.reads() {

@@ -87,7 +87,7 @@ impl Graph<'_> {
 
 impl Selection {
     /// The values that `outputs` need.
-    pub fn of(graph: &Graph, outputs: &[ExprId]) -> Self {
+    pub fn new(graph: &Graph, outputs: &[ExprId]) -> Self {
         let size = graph.program.operations.len();
         let mut selection = Selection { wanted: vec![[false; 2]; size], recipes: vec![None; size] };
         for output in outputs {

@@ -221,7 +221,7 @@ impl DynCrane for Fleet {
         if let Some((_, Room { results, .. })) = &mut factorise {
             results.fill(f64x8::splat(f64::NAN));
         }
-        Box::new(System { factorise, solve: ready(FunctionId::Solve), version: 1 })
+        Box::new(FleetSystem { factorise, solve: ready(FunctionId::Solve), version: 1 })
     }
 
     fn linearise(&self, _: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]) {
@@ -289,14 +289,14 @@ impl DynCrane for Fleet {
 }
 
 /// Linear systems of all cranes.
-struct System<'a> {
+struct FleetSystem<'a> {
     factorise: Option<(&'a Routine, Room)>,
     solve: Option<(&'a Routine, Room)>,
     /// The number of the factors.
     version: u64,
 }
 
-impl DynSystem for System<'_> {
+impl DynSystem for FleetSystem<'_> {
     fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
         if let Some((routine, Room { machine, given, results })) = &mut self.factorise {
             let arguments = Arguments { q, added_inertia, base, ..Arguments::none() };

@@ -11,7 +11,7 @@ use crane_quantities::{Count, Part, quantities};
 use super::fleet::Fleet;
 use super::loop_stiffness::loop_stiffness;
 use super::methods::{method, methods};
-use super::systems::{Block, System};
+use super::systems::{Block, LiveSystem};
 use super::{LiveCrane, at, copy, no_rooms};
 use crate::derivatives::Storage;
 use crate::inputs::{is_free, slots_of};
@@ -90,7 +90,7 @@ impl DynCrane for LiveCrane {
     }
 
     fn system(&self) -> Box<dyn DynSystem + '_> {
-        Box::new(System::new(self))
+        Box::new(LiveSystem::new(self))
     }
 
     fn fleet(&self, cranes: &[&dyn DynCrane]) -> Option<Box<dyn DynCrane>> {

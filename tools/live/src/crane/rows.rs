@@ -20,7 +20,7 @@ use crate::routine::Routine;
 
 /// States and parameters, row after row. A list of one row applies to all rows; missing parameters are those of the crane.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Rows<'a> {
+pub struct ParameterRows<'a> {
     /// Times, s.
     pub t: &'a [f64],
     /// Coordinates, m and rad.
@@ -219,7 +219,7 @@ impl<T: Number> std::fmt::Debug for Evaluation<T> {
 
 impl<T: Batch> Evaluation<T> {
     /// Computes some rows into `out`, row after row.
-    pub fn run(&mut self, rows: &Rows<'_>, range: Range<usize>, out: &mut [f64]) {
+    pub fn run(&mut self, rows: &ParameterRows<'_>, range: Range<usize>, out: &mut [f64]) {
         let mut first = range.start;
         for several in out.chunks_mut((T::LANES * self.width).max(1)) {
             let count = (range.end - first).min(T::LANES);
@@ -264,7 +264,7 @@ impl<T> Lanes<T> {
 
 impl<T: Batch> Lanes<T> {
     /// Takes rows of a crane with `n` coordinates and with `parameters` parameters; the last row fills the remaining lanes.
-    fn take(&mut self, [n, parameters]: [usize; 2], rows: &Rows<'_>, first: usize, count: usize) {
+    fn take(&mut self, [n, parameters]: [usize; 2], rows: &ParameterRows<'_>, first: usize, count: usize) {
         let states =
             [(&mut self.t, rows.t, 1), (&mut self.q, rows.q, n), (&mut self.v, rows.v, n), (&mut self.a, rows.a, n)];
         for (lanes, list, width) in states.into_iter().chain([(&mut self.parameters, rows.parameters, parameters)]) {

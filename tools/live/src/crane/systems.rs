@@ -13,7 +13,7 @@ use crate::routine::Routine;
 type Ready<'a, T> = Option<(&'a Routine, Machine<T>)>;
 
 /// Linear systems, with the factors of the last one.
-pub(super) struct System<'a> {
+pub(super) struct LiveSystem<'a> {
     factorise: Ready<'a, f64>,
     solve: Ready<'a, f64>,
     factors: Vec<f64>,
@@ -21,7 +21,7 @@ pub(super) struct System<'a> {
     version: u64,
 }
 
-impl<'a> System<'a> {
+impl<'a> LiveSystem<'a> {
     /// Of a crane.
     pub fn new(crane: &'a LiveCrane) -> Self {
         let ready = |id: FunctionId| {
@@ -38,7 +38,7 @@ impl<'a> System<'a> {
     }
 }
 
-impl DynSystem for System<'_> {
+impl DynSystem for LiveSystem<'_> {
     fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
         if let Some((routine, machine)) = &mut self.factorise {
             let arguments = Arguments { added_inertia, base, ..at(q) };

@@ -79,7 +79,7 @@ impl LargestLoad {
     ///
     /// # Errors
     /// There is none.
-    pub fn of(crane: &LiveCrane, asked: &Envelope) -> Result<Self, NoLargestLoad> {
+    pub fn new(crane: &LiveCrane, asked: &Envelope) -> Result<Self, NoLargestLoad> {
         let found: Mutex<Option<Rating>> = Mutex::new(None);
         let done = |_: usize, ratings: &[Rating]| {
             *found.lock().unwrap_or_else(PoisonError::into_inner) = ratings.first().cloned();
@@ -156,7 +156,7 @@ impl LargestLoad {
             let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
             let at = |share: f64| {
                 let other = number.change(crane, share * step).map_err(NoLargestLoad::Refused)?;
-                Ok(Self::of(&other, asked)?.load)
+                Ok(Self::new(&other, asked)?.load)
             };
             let Differences { derivatives, errors: own, .. } =
                 Differences::central([at(-1.0)?, at(-0.5)?, at(0.5)?, at(1.0)?].map(|load| vec![load]), step);
@@ -190,7 +190,7 @@ impl LargestLoad {
                 continue;
             };
             let straight = found.derivatives[place][output] * step;
-            match Self::of(&other, asked) {
+            match Self::new(&other, asked) {
                 Err(none) => words.push(format!("{with}, {}", none.words(&other, unit))),
                 Ok(then) if then.limit != self.limit => words.push(format!(
                     "{with}, the largest load is {}, limited by {}: it changes by {} instead of {}",

@@ -223,7 +223,7 @@ pub fn sensitivity_near(
     q: &[f64],
 ) -> Result<Sensitivity, Failed> {
     let any: &dyn DynCrane = crane;
-    at_rest(crane, parameters, *settings, &Problem::of(any).from(q).solve())
+    at_rest(crane, parameters, *settings, &Problem::new(any).from(q).solve())
 }
 
 /// At an equilibrium that was found.
@@ -236,11 +236,11 @@ fn at_rest(
     let any: &dyn DynCrane = crane;
     let name = &crane.description().name;
     if !equilibrium.is_stable() {
-        return Err(Reason::no_equilibrium(any, equilibrium).of(name));
+        return Err(Reason::no_equilibrium(any, equilibrium).for_crane(name));
     }
     let mut source = Source::new(crane);
     let Some(rest) = Rest::new(&mut source, equilibrium.q.clone()) else {
-        return Err(Reason::Undetermined.of(name));
+        return Err(Reason::Undetermined.for_crane(name));
     };
     let (mut derivatives, mut pose, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     let strength = Strength::new(&mut source, &rest, &mut notes);

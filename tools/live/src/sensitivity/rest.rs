@@ -26,7 +26,7 @@ pub(super) struct Rest {
     unknowns: Vec<usize>,
     /// Equations of loop joints that are independent.
     independent: Vec<usize>,
-    system: System,
+    system: RestSystem,
 }
 
 impl Rest {
@@ -41,10 +41,10 @@ impl Rest {
             prescribed: drives.filter(|(coordinate, _)| fixed.contains(coordinate)).collect(),
             unknowns: (0..q.len()).filter(|coordinate| !fixed.contains(coordinate)).collect(),
             independent: loop_joints::independent(crane, &q),
-            system: System::empty(),
+            system: RestSystem::empty(),
             q,
         };
-        rest.system = System::new(rest.matrix(source), rest.unknowns.len())?;
+        rest.system = RestSystem::new(rest.matrix(source), rest.unknowns.len())?;
         for _ in 0..STEPS {
             let (q, multipliers) = (constants(&rest.q), constants(&rest.multipliers));
             let missing = rest.missing(source, &q, &multipliers);
@@ -54,7 +54,7 @@ impl Rest {
             }
             rest.add(step.as_slice());
         }
-        rest.system = System::new(rest.matrix(source), rest.unknowns.len())?;
+        rest.system = RestSystem::new(rest.matrix(source), rest.unknowns.len())?;
         Some(rest)
     }
 
@@ -152,7 +152,7 @@ fn column(numbers: &[Dual8], part: impl Fn(&Dual8) -> f64) -> DVector<f64> {
 }
 
 /// A linear system in scaled unknowns, `S M S y = S b`, `x = S y`: m, rad, N and N m become comparable.
-struct System {
+struct RestSystem {
     matrix: DMatrix<f64>,
     scale: DVector<f64>,
     factors: LU<f64, Dyn, Dyn>,
@@ -160,7 +160,7 @@ struct System {
     free: usize,
 }
 
-impl System {
+impl RestSystem {
     fn empty() -> Self {
         let matrix = DMatrix::zeros(0, 0);
         Self { factors: matrix.clone().lu(), matrix, scale: DVector::zeros(0), free: 0 }

@@ -133,9 +133,10 @@ fn a_boom_bends_under_its_cylinder() {
 #[test]
 fn shut_valves_hold_a_bent_boom() {
     let crane = boom("{hold: 0.4}");
-    let start = Start::of(&crane).expect("it rests");
+    let start = Start::new(&crane).expect("it rests");
     for method in [Method::Bdf, Method::Rosenbrock] {
-        let settings = Settings { method, tolerance: 1e-9, duration: 0.3, ..Settings::of(crane.description()) };
+        let settings =
+            Settings { method, tolerance: 1e-9, duration: 0.3, ..Settings::from_description(crane.description()) };
         let run = runs::record(&crane, &start, &settings, &mut |_| ControlFlow::Continue(()));
         let table = run.unwrap_or_else(|failed| panic!("{failed:?}")).table;
         for name in names(&crane) {
@@ -199,7 +200,7 @@ fn statics_hold_cylinders_at_given_positions() {
     let (crane, other) = (boom("{hold: 0.4}"), boom("{hold: 0.7}"));
     let (crane, other): (&dyn DynCrane, &dyn DynCrane) = (&crane, &other);
     let expected = rest(other);
-    let found = statics::Problem::of(crane).holding(&[0.0, 0.7]).from(&rest(crane)).solve();
+    let found = statics::Problem::new(crane).holding(&[0.0, 0.7]).from(&rest(crane)).solve();
     assert!(found.is_stable(), "{found}");
     for (found, expected) in found.q.iter().zip(&expected) {
         assert!((found - expected).abs() < 1e-10, "{found} for {expected}");

@@ -43,12 +43,12 @@ fn settings(crane: &LiveCrane, method: Method, duration: f64) -> Settings {
         duration,
         output: duration / 100.0,
         step: 2e-5,
-        ..Settings::of(crane.description())
+        ..Settings::from_description(crane.description())
     }
 }
 
 fn record(crane: &LiveCrane, method: Method, duration: f64) -> Table {
-    let start = Start::of(crane).unwrap_or_else(|_| Start::guess(crane));
+    let start = Start::new(crane).unwrap_or_else(|_| Start::guess(crane));
     let recorded = runs::record(crane, &start, &settings(crane, method, duration), &mut |_| ControlFlow::Continue(()));
     recorded.unwrap_or_else(|failed| panic!("{failed:?}")).table
 }
@@ -73,7 +73,7 @@ fn bristles_at_rest_are_a_spring() {
         let settings = Settings { output: end, tolerance: 1e-12, ..settings(&crane, method, end) };
         let start = InitialState { q: vec![0.0], v: vec![speed], x: Vec::new() };
         let mut x = f64::NAN;
-        let run = Simulation::of(&crane, &start, &settings).observe(|sample| {
+        let run = Simulation::new(&crane, &start, &settings).observe(|sample| {
             x = sample.q[0];
             ControlFlow::Continue(())
         });
@@ -130,7 +130,7 @@ run: {{duration: 20, step: 2e-5, output: 1}}
         let crane =
             LiveCrane::from_spec(&SourceFile::new("arm.yaml", text)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
         let at = |method, tolerance| {
-            let settings = Settings { method, tolerance, ..Settings::of(crane.description()) };
+            let settings = Settings { method, tolerance, ..Settings::from_description(crane.description()) };
             let recorded = runs::record(&crane, &Start::guess(&crane), &settings, &mut |_| ControlFlow::Continue(()));
             column(&recorded.unwrap_or_else(|failed| panic!("{failed:?}")).table, "arm_theta")
         };
@@ -197,7 +197,7 @@ fn sliding_bristles_limit_the_step_of_explicit_methods() {
     let crane = slide(&drive);
     let start = Start::guess(&crane);
     let poses = runs::manoeuvre(&crane, &Start { rests: true, ..start.clone() }, 4).expect("modes");
-    let limit = runs::Bound::of(&poses, Method::Rk4).expect("a limit").limit;
+    let limit = runs::Bound::smallest(&poses, Method::Rk4).expect("a limit").limit;
     // Far above the Stribeck velocity g is the Coulomb friction.
     let decay = STIFFNESS * RATE / COULOMB;
     assert!((limit.mode.eigenvalue.re / -decay - 1.0).abs() < 1e-9, "{} for {decay}", limit.mode.eigenvalue);

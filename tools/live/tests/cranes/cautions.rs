@@ -21,7 +21,7 @@ fn spec(text: &str) -> LiveCrane {
 }
 
 fn cautions_of_run(crane: &LiveCrane, settings: &Settings) -> Vec<String> {
-    let start = Start::of(crane).unwrap_or_else(|failed| panic!("{failed}"));
+    let start = Start::new(crane).unwrap_or_else(|failed| panic!("{failed}"));
     let check = (false, cautions::BEND);
     let recorded = record_checked(crane, &start, settings, check, &mut |_| ControlFlow::Continue(()));
     recorded.unwrap_or_else(|failed| panic!("{failed}")).cautions
@@ -32,14 +32,14 @@ fn cautions_of_run(crane: &LiveCrane, settings: &Settings) -> Vec<String> {
 fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
     for name in ["eight_link_hydraulic", "loader_tipping"] {
         let crane = shipped(name);
-        let settings = Settings { duration: 6.5, audit: false, ..Settings::of(crane.description()) };
+        let settings = Settings { duration: 6.5, audit: false, ..Settings::from_description(crane.description()) };
         let single = cautions_of_run(&crane, &settings);
         assert!(!single.is_empty(), "{name}");
         let execution = Execution { threads: 1, done: &|_, _| (), cancelled: &|_| false };
         let rows = ensemble::run_ensemble(&crane, &[crane.parameters().to_vec().into()], &settings, &execution);
         assert_eq!(rows[0].cautions, single, "{name}");
 
-        let start = Start::of(&crane).expect("it rests");
+        let start = Start::new(&crane).expect("it rests");
         let table = crane_model::runs::record(&crane, &start, &settings, &mut |_| ControlFlow::Continue(()))
             .expect("a run")
             .table;
@@ -49,7 +49,7 @@ fn ensembles_have_the_cautions_and_extremes_of_single_runs() {
         let mut pressures = 0;
         for (column, value) in columns.iter().zip(values) {
             let Some(of) = column.name.strip_suffix("_max") else { continue };
-            let Extremes { maximum, .. } = Extremes::of(&table, of);
+            let Extremes { maximum, .. } = Extremes::of_column(&table, of);
             assert_eq!(value, maximum, "{name}: {of}");
             pressures += usize::from(of.ends_with("_pressure"));
         }
@@ -65,7 +65,7 @@ fn ensembles_know_drives_at_their_limits() {
          {name: bob, joint: {revolute: {axis: y}}, mass: 5, com: [0, 0, -1]}]\n\
          drives: [{coordinate: hook_z, stiffness: 1e5, damping: 1e3, max_effort: 1300, motion: {quintic: {from: 0, to: 1, duration: 0.6}}}]\n",
     );
-    let settings = Settings { duration: 1.0, audit: false, ..Settings::of(crane.description()) };
+    let settings = Settings { duration: 1.0, audit: false, ..Settings::from_description(crane.description()) };
     let single = cautions_of_run(&crane, &settings);
     assert!(single.iter().any(|caution| caution.contains("1300")), "{single:?}");
     let execution = Execution { threads: 1, done: &|_, _| (), cancelled: &|_| false };
@@ -99,7 +99,7 @@ run: {{duration: 3, output: 0.01}}
 #[test]
 fn a_servo_that_stays_behind_gets_a_caution() {
     let behind = |crane: &LiveCrane| {
-        let all = cautions_of_run(crane, &Settings::of(crane.description()));
+        let all = cautions_of_run(crane, &Settings::from_description(crane.description()));
         all.into_iter().find(|caution| caution.starts_with("ram falls behind"))
     };
     let text = behind(&lift(1e-3, "gain: 2, feed_forward: 0")).expect("a caution");
@@ -122,12 +122,12 @@ drives: [{{coordinate: lift_z, stiffness: 1e5, max_effort: {limit}, motion: {{ho
 "
         ))
     };
-    let failed = Start::of(&lift(500.0)).expect_err("it falls");
+    let failed = Start::new(&lift(500.0)).expect_err("it falls");
     assert!(failed.to_string().ends_with("; the drive of lift_z is at its limit"), "{failed}");
     assert!(failed.advice().starts_with("raise `max_effort`"), "{}", failed.advice());
     // If it can, but only just, a caution says how close it is to its limit: 981 of 985 N.
     let crane = lift(985.0);
-    let start = Start::of(&crane).expect("it rests");
+    let start = Start::new(&crane).expect("it rests");
     let cautions = cautions::of_pose(&crane, &start.q, cautions::BEND);
     assert!(cautions[0].starts_with("the drive of lift_z is at its limit, 981.0 of 985.0 N"), "{cautions:?}");
 }
@@ -139,7 +139,7 @@ fn the_energy_balance_of_a_light_crane_is_looked_at() {
         "format: 1\nname: light\nlinks: [{name: arm, joint: revolute, mass: 1 g, com: [0.1, 0, 0], placement: {transform: {rotation: {x: 90 deg}}}}]\n\
          guess: {arm_psi: 0.5}\nrun: {duration: 4, step: 0.2, output: 0.2}\n",
     );
-    let settings = Settings { method: Method::Rk4, audit: true, ..Settings::of(pendulum.description()) };
+    let settings = Settings { method: Method::Rk4, audit: true, ..Settings::from_description(pendulum.description()) };
     let start = Start::given(InitialState::at_rest(vec![0.5]));
     let recorded =
         record_checked(&pendulum, &start, &settings, (false, cautions::BEND), &mut |_| ControlFlow::Continue(()));

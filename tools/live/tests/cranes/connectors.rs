@@ -151,7 +151,7 @@ fn a_pendulum_hangs_from_its_winch_at_any_time() {
     let crane = swinging("{rope: {stiffness: 1e5, motion: {quintic: {from: 2, to: 1.2, duration: 3}}}}");
     let crane: &dyn DynCrane = &crane;
     let start = rest(crane);
-    let later = statics::Problem::of(crane).at_time(3.0).from(&start).solve();
+    let later = statics::Problem::new(crane).at_time(3.0).from(&start).solve();
     assert!(later.is_stable(), "{later}");
     let length = 1.2 + 50.0 * GRAVITY / 1e5;
     assert!((later.q[1] + length).abs() < 1e-10 && later.q[0].abs() < 1e-10, "{:?}", later.q);
@@ -169,7 +169,7 @@ fn a_falling_weight_is_caught_by_its_rope() {
     // Down, up again, and half of the second fall.
     let duration = 2.6 * (2.0 * fall / GRAVITY).sqrt();
     for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
-        let of_spec = Settings::of(crane.description());
+        let of_spec = Settings::from_description(crane.description());
         let settings = Settings { method, tolerance: 1e-7, duration, output: 1e-3, audit: true, ..of_spec };
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut recording = Recording::new(crane);
@@ -201,7 +201,7 @@ fn a_winch_does_the_work_of_the_weight() {
         hung("{rope: {stiffness: 2e4, damping: 5, motion: {quintic: {from: 2, to: 0.8, begin: 0.5, duration: 3}}}}");
     let crane: &dyn DynCrane = &crane;
     let start = InitialState { q: rest(crane), v: vec![0.0], ..InitialState::default() };
-    let of_spec = Settings::of(crane.description());
+    let of_spec = Settings::from_description(crane.description());
     let settings = Settings { tolerance: 1e-7, duration: 10.0, output: 0.1, audit: true, ..of_spec };
     let mut end = (0.0, 0.0);
     run_watched(crane, &settings, &start, &mut |sample| end = (sample.q[0], sample.work));
@@ -209,7 +209,7 @@ fn a_winch_does_the_work_of_the_weight() {
     let work = 50.0 * GRAVITY * 1.2;
     // The rope's damper dissipates the vibration that the winch's acceleration excites.
     assert!((end.1 / work - 1.0).abs() < 2e-3, "{} J instead of {work} J", end.1);
-    let later = statics::Problem::of(crane).at_time(10.0).from(&start.q).solve();
+    let later = statics::Problem::new(crane).at_time(10.0).from(&start.q).solve();
     assert!((later.q[0] - start.q[0] - 1.2).abs() < 1e-9, "{later}");
 }
 
@@ -255,7 +255,7 @@ fn a_spring_along_a_slide_steps_like_that_of_a_drive() {
         let [one, other] = [between, driven].map(|spring| {
             let slide = slide(spring);
             let slide: &dyn DynCrane = &slide;
-            let of_spec = Settings::of(slide.description());
+            let of_spec = Settings::from_description(slide.description());
             let settings = Settings { method, tolerance: 1e-6, duration: 0.5, output: 0.5, ..of_spec };
             let mut end = f64::NAN;
             let run = run_watched(slide, &settings, &start, &mut |sample| end = sample.q[0]);
@@ -282,7 +282,7 @@ fn implicit_steps_know_springs_across_several_joints() {
     );
     let arms: &dyn DynCrane = &arms;
     let start = InitialState { q: rest(arms), v: vec![0.0; 3], ..InitialState::default() };
-    let of_spec = Settings::of(arms.description());
+    let of_spec = Settings::from_description(arms.description());
     let [(q, steps), (exact, most)] = [Method::Bdf, Method::DormandPrince].map(|method| {
         let settings = Settings { method, tolerance: 1e-5, duration: 0.6, output: 0.6, ..of_spec };
         let mut q = Vec::new();
@@ -312,7 +312,7 @@ fn a_second_stage_follows_the_first() {
     assert!((telescope.drive_efforts_at_rest(&q)[0] / effort - 1.0).abs() < 1e-9);
     // At the end of the motion both stages have moved equally far.
     let start = InitialState { q: q.clone(), v: vec![0.0; 2], ..InitialState::default() };
-    let of_spec = Settings::of(telescope.description());
+    let of_spec = Settings::from_description(telescope.description());
     let settings = Settings { tolerance: 1e-6, duration: 6.0, output: 1.0, audit: true, ..of_spec };
     let (mut end, mut recording) = (Vec::new(), Recording::new(telescope));
     run_watched(telescope, &settings, &start, &mut |sample| {

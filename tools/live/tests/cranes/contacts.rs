@@ -18,10 +18,16 @@ fn crane(text: &str) -> LiveCrane {
 }
 
 fn run(crane: &LiveCrane, method: Method, duration: f64) -> Table {
-    let settings =
-        Settings { method, tolerance: 1e-9, duration, output: 1e-3, audit: true, ..Settings::of(crane.description()) };
+    let settings = Settings {
+        method,
+        tolerance: 1e-9,
+        duration,
+        output: 1e-3,
+        audit: true,
+        ..Settings::from_description(crane.description())
+    };
     let crane: &dyn DynCrane = crane;
-    let start = Start::of(crane).unwrap_or_else(|failed| panic!("{failed}"));
+    let start = Start::new(crane).unwrap_or_else(|failed| panic!("{failed}"));
     let recorded = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(()));
     recorded.unwrap_or_else(|failed| panic!("{failed}")).table
 }
@@ -97,9 +103,10 @@ fn a_bounce_between_two_results_is_told() {
          contacts: [{name: ground, link: load, height: -1, stiffness: 1e7}]\nanalyses: [dynamics]\n",
     );
     for (output, told) in [(0.05, true), (1e-3, false)] {
-        let settings = Settings { duration: 0.6, output, tolerance: 1e-7, ..Settings::of(falls.description()) };
+        let settings =
+            Settings { duration: 0.6, output, tolerance: 1e-7, ..Settings::from_description(falls.description()) };
         let whole: &dyn DynCrane = &falls;
-        let start = Start::of(whole).expect("a start");
+        let start = Start::new(whole).expect("a start");
         let recorded =
             record_checked(whole, &start, &settings, (false, 20.0), &mut |_| ControlFlow::Continue(())).expect("a run");
         let most = column(&recorded.table, "ground_force").into_iter().fold(0.0, f64::max);

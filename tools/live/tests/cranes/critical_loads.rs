@@ -112,7 +112,7 @@ fn stands(crane: &mut dyn DynCrane, from: f64, load: f64) -> bool {
     for step in 1..=24 {
         let part = if step == 24 { 1.0 } else { 1.0 - 0.5f64.powi(step) };
         crane.set_parameter(0, from + part * (load - from)).unwrap();
-        let next = Problem::of(&*crane).from(&found.q).solve();
+        let next = Problem::new(&*crane).from(&found.q).solve();
         let margin =
             governing(&lines(crane, 0.0, &next.q, &rest, &rest)).map_or(1.0, crane_model::tipping::TippingLine::margin);
         if !next.is_stable() || crane.description().has_tipped(&start, &next.q) || margin < 0.0 {
@@ -186,7 +186,7 @@ fn the_shipped_loader_stands_wherever_smaller_loads_lead() {
         for hundreds in 1..60 {
             crane.set_parameter(0, 100.0 * f64::from(hundreds)).unwrap();
             let guess = crane.guess();
-            let hold = |q: &[f64]| Problem::of(&*crane).holding(&positions).from(q).solve();
+            let hold = |q: &[f64]| Problem::new(&*crane).holding(&positions).from(q).solve();
             let here = hold(led.as_deref().unwrap_or(&guess));
             if !here.is_stable() {
                 break;

@@ -79,8 +79,8 @@ fn a_cylinder_below_an_arm_carries_its_weight() {
 #[test]
 fn a_run_has_the_power_of_its_drive_and_the_oil_of_its_volume() {
     let crane = arm(PLAIN);
-    let settings = Settings { duration: 3.5, output: 1e-3, ..Settings::of(crane.description()) };
-    let start = Start::of(&crane).expect("it stands");
+    let settings = Settings { duration: 3.5, output: 1e-3, ..Settings::from_description(crane.description()) };
+    let start = Start::new(&crane).expect("it stands");
     let table =
         runs::record(&crane, &start, &settings, &mut |_| std::ops::ControlFlow::Continue(())).expect("runs").table;
     let column = |name: &str| table.values(name).unwrap_or_else(|| panic!("no {name}")).collect::<Vec<f64>>();
@@ -107,12 +107,12 @@ fn a_run_has_the_power_of_its_drive_and_the_oil_of_its_volume() {
 #[test]
 fn a_cylinder_that_only_pulls_has_no_push() {
     let crane = arm(&format!("{PLAIN}\ngravity: [0, 0, 9.81]"));
-    let settings = Settings { duration: 3.5, output: 0.01, ..Settings::of(crane.description()) };
-    let start = Start::of(&crane).expect("it stands");
+    let settings = Settings { duration: 3.5, output: 0.01, ..Settings::from_description(crane.description()) };
+    let start = Start::new(&crane).expect("it stands");
     let table =
         runs::record(&crane, &start, &settings, &mut |_| std::ops::ControlFlow::Continue(())).expect("runs").table;
     let least = table.values("lift_force").expect("a column").fold(0.0, f64::min);
-    let duty = &Duties::of(crane.description(), &table).cylinders[0];
+    let duty = &Duties::new(crane.description(), &table).cylinders[0];
     assert_eq!([duty.push, duty.pull], [0.0, -least]);
     // At the end, where the lever is shortest; stopping there adds some per cent.
     let lever = at(&crane, &[0.0, -0.6], &[0.0; 2]).arm.abs();
@@ -215,8 +215,8 @@ fn a_linkage_that_does_not_reach_is_named() {
         "    head: {link: arm, at: [0.25, 0, 0]}\n    linkage: {pivot: [0, 0, -0.4], rocker: 0.25, link: 0.3, side: left}\n    retracted: 0.2\n    \
          stroke: 1",
     );
-    let start = Start::of(&crane).expect("it stands");
-    let settings = Settings { duration: 3.0, ..Settings::of(crane.description()) };
+    let start = Start::new(&crane).expect("it stands");
+    let settings = Settings { duration: 3.0, ..Settings::from_description(crane.description()) };
     let failed = runs::record(&crane, &start, &settings, &mut |_| std::ops::ControlFlow::Continue(()))
         .expect_err("it does not reach");
     let message = failed.to_string();
@@ -253,8 +253,8 @@ fn limits_of_cylinders_are_cautions() {
 fn a_held_cylinder_takes_nothing_of_the_pump() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../specs/examples/parallel_harvester.yaml");
     let crane = LiveCrane::from_spec(&build::open(path.as_ref()).expect("a spec")).expect("valid");
-    let settings = Settings { duration: 8.0, output: 0.02, ..Settings::of(crane.description()) };
-    let start = Start::of(&crane).expect("it stands");
+    let settings = Settings { duration: 8.0, output: 0.02, ..Settings::from_description(crane.description()) };
+    let start = Start::new(&crane).expect("it stands");
     let table =
         runs::record(&crane, &start, &settings, &mut |_| std::ops::ControlFlow::Continue(())).expect("runs").table;
     let column = |name: &str| table.values(name).unwrap_or_else(|| panic!("no {name}")).collect::<Vec<f64>>();

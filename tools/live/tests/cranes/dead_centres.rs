@@ -167,8 +167,9 @@ fn a_rod_counts_as_the_link_that_it_stands_for() {
 
 fn run(crane: &LiveCrane, output: f64) -> Result<Vec<String>, String> {
     let crane: &dyn DynCrane = crane;
-    let settings = Settings { method: Method::Bdf, output, audit: false, ..Settings::of(crane.description()) };
-    let start = Start::of(crane).map_err(|failed| failed.to_string())?;
+    let settings =
+        Settings { method: Method::Bdf, output, audit: false, ..Settings::from_description(crane.description()) };
+    let start = Start::new(crane).map_err(|failed| failed.to_string())?;
     let recorded = record(crane, &start, &settings, &mut |_| ControlFlow::Continue(()));
     recorded.map(|recorded| of_run(crane, &recorded.table, 20.0)).map_err(|failed| failed.to_string())
 }

@@ -37,7 +37,7 @@ fn an_effort_is_a_pair_of_moments() {
         let crane: &dyn DynCrane = &crane;
         let q: Vec<f64> = (0..n).map(|i| 0.3 * (1.3 * i as f64).sin()).collect();
         let v: Vec<f64> = (0..n).map(|i| 0.2 * (0.7 * i as f64).cos()).collect();
-        let rest = Problem::of(crane).from(&crane.guess()).solve();
+        let rest = Problem::new(crane).from(&crane.guess()).solve();
         assert!(rest.is_stable());
         let mut all = crane.accelerations_at(0.0, &q, &v).as_slice().to_vec();
         all.extend(rest.q.clone());
@@ -107,7 +107,7 @@ fn a_limited_effort_moves_a_mass_and_the_energy_balances() {
         let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
         let begin = slide.energies_at(0.0, &start.q, &start.v).total();
         for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
-            let defaults = Settings::of(slide.description());
+            let defaults = Settings::from_description(slide.description());
             let settings =
                 Settings { method, tolerance: 1e-9, duration: 3.0, output: 0.01, step: 1e-3, audit: true, ..defaults };
             let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {

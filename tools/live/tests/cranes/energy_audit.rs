@@ -36,7 +36,7 @@ const RIGID: &str = "format: 1\nname: arm\nlinks:\n\
 /// Largest work of the drives, dissipated energy at the end, and largest error of the balance, J.
 fn audit(crane: &LiveCrane, method: Method, tolerance: f64) -> [f64; 3] {
     let crane: &dyn DynCrane = crane;
-    let settings = Settings { method, tolerance, audit: true, ..Settings::of(crane.description()) };
+    let settings = Settings { method, tolerance, audit: true, ..Settings::from_description(crane.description()) };
     let start = InitialState::at_rest(crane.guess());
     let (mut first, mut work, mut lost, mut off) = (None, 0.0_f64, 0.0, 0.0_f64);
     let mut observe = |sample: &Sample<'_>| {

@@ -17,15 +17,21 @@ fn crane(text: &str) -> LiveCrane {
 }
 
 fn settings(crane: &LiveCrane, method: Method, duration: f64) -> Settings {
-    let settings =
-        Settings { method, tolerance: 1e-10, duration, output: 0.01, audit: true, ..Settings::of(crane.description()) };
+    let settings = Settings {
+        method,
+        tolerance: 1e-10,
+        duration,
+        output: 0.01,
+        audit: true,
+        ..Settings::from_description(crane.description())
+    };
     if method == Method::Rosenbrock { Settings { tolerance: 1e-8, ..settings } } else { settings }
 }
 
 fn run(crane: &LiveCrane, method: Method, duration: f64) -> Table {
     let settings = settings(crane, method, duration);
     let crane: &dyn DynCrane = crane;
-    let start = Start::of(crane).expect("a start");
+    let start = Start::new(crane).expect("a start");
     record(crane, &start, &settings, &mut |_| ControlFlow::Continue(()))
         .unwrap_or_else(|failed| panic!("{failed}"))
         .table
@@ -76,7 +82,7 @@ fn a_run_that_begins_later_has_the_events_from_there() {
     let lift = crane(&format!(
         "{LIFT}events: [{{name: before, at: 300 ms, set: {{load: 200 kg}}}}, {{name: drop, at: 505 ms, set: {{load: 90 kg}}}}]\n"
     ));
-    let (start, settings) = (Start::of(&lift as &dyn DynCrane).expect("a start"), settings(&lift, Method::Bdf, 0.25));
+    let (start, settings) = (Start::new(&lift as &dyn DynCrane).expect("a start"), settings(&lift, Method::Bdf, 0.25));
     let (omega, mut times) = ((5e4_f64 / 90.0).sqrt(), Vec::new());
     let run =
         Simulation::with_events(&lift, &QUANTITIES, start.state.clone(), &settings).at_time(0.5).observe(|sample| {
@@ -196,7 +202,7 @@ fn an_event_moves_nothing_at_once() {
     );
     let settings = settings(&crane, Method::Bdf, 2.0);
     let whole: &dyn DynCrane = &crane;
-    let start = Start::of(whole).expect("a start");
+    let start = Start::new(whole).expect("a start");
     let told = record(whole, &start, &settings, &mut |_| ControlFlow::Continue(())).expect_err("a jump").to_string();
     assert!(told.contains("event `longer` would move a_x from 0.750000 to 1.250000 at once"), "{told}");
 }
@@ -225,7 +231,7 @@ fn a_pendulum_catches_what_flies() {
 fn times(crane: &LiveCrane, method: Method, duration: f64) -> (Vec<Option<f64>>, Vec<String>) {
     let settings = settings(crane, method, duration);
     let crane: &dyn DynCrane = crane;
-    let start = Start::of(crane).expect("a start");
+    let start = Start::new(crane).expect("a start");
     let found =
         record_checked(crane, &start, &settings, (true, 5.0), &mut |_| ControlFlow::Continue(())).expect("a run");
     (found.table.times_of_events(crane.description()), found.cautions)
@@ -286,7 +292,7 @@ fn efforts_before_an_event_count() {
     let lift = LIFT.replace("{hold: 0}", "{speed: {rate: 0.4}}");
     let lift = crane(&format!("{lift}events: [{{name: drop, at: 505 ms, set: {{load: 90 kg}}}}]\n"));
     let expected = 590.0 * (GRAVITY + 0.4 * (5e4_f64 / 590.0).sqrt());
-    let start = Start::of(&lift).expect("a start");
+    let start = Start::new(&lift).expect("a start");
     let mut known = 0;
     for method in Method::ALL {
         let settings = settings(&lift, method, 1.0);
@@ -395,7 +401,7 @@ fn steps_have_the_events_of_a_run() {
         let table = run(&crane, method, 2.0);
         assert!(table.times_of_events(crane.description()).iter().all(Option::is_some), "{method:?}");
         let of_steps = Settings { duration: f64::INFINITY, ..settings(&crane, method, 2.0) };
-        let start = Start::of(&crane as &dyn DynCrane).expect("a start").state;
+        let start = Start::new(&crane as &dyn DynCrane).expect("a start").state;
         let mut motion = SteeredMotion::new(&crane, 0.0, &start, &of_steps, None).expect("a motion");
         let mut in_others =
             crane_live::Motion::new(Box::new(crane.clone()), 0.0, &start, &of_steps, None).expect("a motion");

@@ -137,7 +137,15 @@ fn run_watched(crane: &LiveCrane, start: &InitialState, settings: &Settings, at_
 
 fn settings(crane: &LiveCrane, method: Method, tolerance: f64, duration: f64, output: f64) -> Settings {
     let crane: &dyn DynCrane = crane;
-    Settings { method, tolerance, duration, output, step: 1e-5, audit: true, ..Settings::of(crane.description()) }
+    Settings {
+        method,
+        tolerance,
+        duration,
+        output,
+        step: 1e-5,
+        audit: true,
+        ..Settings::from_description(crane.description())
+    }
 }
 
 /// Released at θ₀ about one foot, a slender block lands on the other after a quarter of Housner's period, `arcosh(1/(1 − θ₀/α))/p` with
@@ -231,7 +239,7 @@ fn a_truck_that_tips_names_the_moments_and_the_links() {
     let load = 2.0 * TIPPING;
     crane.set_parameter(0, load).unwrap();
     let found = crane.equilibrium(&Statics::default());
-    let Diagnosis::Overturned { feet, line, most: [Some(worst), Some(best)] } = Diagnosis::of(crane, &found) else {
+    let Diagnosis::Overturned { feet, line, most: [Some(worst), Some(best)] } = Diagnosis::new(crane, &found) else {
         panic!("{found}");
     };
     assert_eq!(feet.each_ref().map(crane_model::Text::as_str), ["near_rear", "near_front"]);
@@ -250,7 +258,7 @@ fn a_truck_that_tips_names_the_moments_and_the_links() {
     for (times, suspected) in [(2.0, false), (7.0, true), (20.0, false)] {
         crane.set_parameter(0, times * TIPPING).unwrap();
         let found = crane.equilibrium(&Statics::default());
-        let advice = Diagnosis::of(crane, &found).advice();
+        let advice = Diagnosis::new(crane, &found).advice();
         assert!(advice.contains("wider stance"), "{advice}");
         assert_eq!(advice.contains("the mass of `load` is a weight in N"), suspected, "{times}: {advice}");
     }
@@ -273,12 +281,12 @@ fn gravity_upwards_and_feet_in_one_place_are_named() {
     let floating: &dyn DynCrane = &floating;
     let found = floating.equilibrium(&Statics::default());
     assert_eq!(found.status, Status::Floats, "{found}");
-    let Diagnosis::Floats { upwards } = Diagnosis::of(floating, &found) else { panic!("{found}") };
+    let Diagnosis::Floats { upwards } = Diagnosis::new(floating, &found) else { panic!("{found}") };
     assert!((upwards - 9810.0).abs() < 1e-9, "{upwards}");
     let stacked = crane(&text(-9.81, 0.0));
     let stacked: &dyn DynCrane = &stacked;
     let found = stacked.equilibrium(&Statics::default());
-    assert_eq!(Diagnosis::of(stacked, &found), Diagnosis::NoPolygon { one_place: true }, "{found}");
+    assert_eq!(Diagnosis::new(stacked, &found), Diagnosis::NoPolygon { one_place: true }, "{found}");
 }
 
 /// What statics ends with if a number of one foot has a wrong place or exponent.
@@ -291,7 +299,7 @@ fn a_foot_in_the_air_and_a_spring_beyond_reason_are_named() {
         let crane: &dyn DynCrane = &changed;
         let found = crane.equilibrium(&Statics::default());
         assert!(!found.is_stable(), "{to}: {found}");
-        Diagnosis::of(crane, &found)
+        Diagnosis::new(crane, &found)
     };
     let found = diagnosis(
         "at: [0, 2.4, 0], stiffness: [3 kN/mm, 3 kN/mm, 8 kN/mm]",
@@ -326,7 +334,7 @@ fn an_equilibrium_that_rounding_hides_is_none() {
         assert_eq!((found.status == Status::NotConverged, found.is_stable()), (hidden, !hidden), "{far:e}: {found}");
         assert!(hidden || found.residual() < 1e-8);
         if hidden {
-            let why = Diagnosis::of(crane, &found);
+            let why = Diagnosis::new(crane, &found);
             assert!(matches!(why, Diagnosis::Rounding { residual } if residual > 1e-6), "{why:?}");
             assert!(why.to_string().contains("rounding"), "{why}");
         }
@@ -365,8 +373,8 @@ fn a_block_that_rocks_on_stiff_ground_keeps_its_energy() {
          run: {{duration: 3, output: 0.05}}\n"
     ));
     for (method, tolerance) in [(Method::Bdf, 1e-7), (Method::Bdf, 1e-8), (Method::Rosenbrock, 1e-8)] {
-        let settings = Settings { method, tolerance, audit: true, ..Settings::of(block.description()) };
-        let start = Start::of(&block).expect("it stands");
+        let settings = Settings { method, tolerance, audit: true, ..Settings::from_description(block.description()) };
+        let start = Start::new(&block).expect("it stands");
         let recorded = record(&block, &start, &settings, &mut |_| ControlFlow::Continue(()));
         let table = recorded.unwrap_or_else(|failed| panic!("{method:?} {tolerance:e}: {failed:?}")).table;
         let column = |name: &str| table.values(name).expect("a column").fold(0.0_f64, |most, x| most.max(x.abs()));

@@ -32,10 +32,10 @@ fn run(crane: &LiveCrane, duration: f64) -> Table {
         tolerance: 1e-10,
         duration,
         output: 1e-3,
-        ..Settings::of(crane.description())
+        ..Settings::from_description(crane.description())
     };
     let crane: &dyn DynCrane = crane;
-    let start = Start::of(crane).expect("a start");
+    let start = Start::new(crane).expect("a start");
     record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())).expect("a run").table
 }
 

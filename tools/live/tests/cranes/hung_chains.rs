@@ -43,7 +43,7 @@ fn chain(bars: usize) -> LiveCrane {
 fn a_chain_between_two_points_is_stable() {
     for bars in [6, 12, 24, 48, 96] {
         let crane = chain(bars);
-        let equilibrium = Problem::of(&crane).solve();
+        let equilibrium = Problem::new(&crane).solve();
         assert_eq!(equilibrium.status, Status::Converged, "{bars} bars: {} steps", equilibrium.steps());
         let mut angle = 0.0;
         let slopes: Vec<f64> = equilibrium

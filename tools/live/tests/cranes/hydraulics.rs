@@ -85,12 +85,12 @@ fn settings(method: Method, tolerance: f64, duration: f64) -> Settings {
         duration,
         step: 5e-5,
         output: 0.01,
-        ..Settings::of(lift(SHUT, HOLD, PUMP).description())
+        ..Settings::from_description(lift(SHUT, HOLD, PUMP).description())
     }
 }
 
 fn record(crane: &LiveCrane, settings: &Settings) -> Table {
-    let start = Start::of(crane).expect("it rests");
+    let start = Start::new(crane).expect("it rests");
     let recorded = runs::record(crane, &start, settings, &mut |_| ControlFlow::Continue(()));
     recorded.unwrap_or_else(|failed| panic!("{failed:?}")).table
 }
@@ -119,7 +119,7 @@ fn trapped_oil_is_a_spring() {
         let settings = Settings { output: quarter, ..settings(method, 1e-10, quarter) };
         let start = InitialState { q: rest.q.clone(), v: vec![0.0, v], x: Vec::new() };
         let mut end = 0.0;
-        let watched = Simulation::of(&crane, &start, &settings).observe(|sample| {
+        let watched = Simulation::new(&crane, &start, &settings).observe(|sample| {
             end = sample.q[1];
             ControlFlow::Continue(())
         });
@@ -280,7 +280,7 @@ fn every_method_follows_the_laws_written_a_second_time() {
         let mut found = [0.0; 6];
         let start = InitialState::at_rest(rest.q.clone());
         let settings = Settings { audit: true, ..settings(method, tolerance, end) };
-        let run = Simulation::of(&crane, &start, &settings).observe(|sample| {
+        let run = Simulation::new(&crane, &start, &settings).observe(|sample| {
             found = [sample.q[1], sample.v[1], sample.x[0], sample.x[1], sample.x[2], sample.x[3]];
             ControlFlow::Continue(())
         });
@@ -309,7 +309,7 @@ fn energy_is_balanced() {
 #[test]
 fn a_run_goes_on_from_the_states_of_its_oil() {
     let crane = lift("gain: 10", "{quintic: {from: 0.1, to: 0.4, duration: 2}}", PUMP);
-    let start = Start::of(&crane).expect("it rests").state;
+    let start = Start::new(&crane).expect("it rests").state;
     let go = |from: &InitialState, begin: f64, duration: f64| {
         let settings = Settings { output: duration, ..settings(Method::Rk4, 1e-8, duration) };
         let mut motion =
@@ -332,7 +332,7 @@ fn a_run_goes_on_from_the_states_of_its_oil() {
 #[test]
 fn oil_limits_the_step_of_explicit_methods() {
     let crane = lift("gain: 10", "{quintic: {from: 0.1, to: 0.4, duration: 2}}", PUMP);
-    let start = Start::of(&crane).expect("it rests");
+    let start = Start::new(&crane).expect("it rests");
     let limit = runs::step_limit(&crane, &start).expect("a limit").limit;
     assert!(limit.step < 0.2 * 2.8 / (stiffness(0.1) / MASS).sqrt(), "{} s", limit.step);
     let cause = crane_model::stability::cause(crane.description(), &limit.mode);

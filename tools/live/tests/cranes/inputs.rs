@@ -45,7 +45,7 @@ fn numbers(crane: &LiveCrane, t: f64) -> Vec<f64> {
     all.extend(crane.drive_motions_at(t).concat());
     all.extend([crane.energies_at(t, &q, &v).total(), crane.drive_power(t, &q, &v), crane.load_power(t, &q, &v)]);
     all.extend(crane.internal_forces_at(t, &q, &v, &v).iter().flat_map(|wrench| wrench.force.data.0[0]));
-    all.extend(Problem::of(crane).at_time(t).from(&q).solve().q);
+    all.extend(Problem::new(crane).at_time(t).from(&q).solve().q);
     all
 }
 
@@ -117,14 +117,14 @@ fn a_controller_sets_inputs_between_steps() {
     );
     let omega = 5.0_f64;
     for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
-        let of_spec = Settings::of(slide.description());
+        let of_spec = Settings::from_description(slide.description());
         let settings = Settings { method, tolerance: 1e-9, duration: 0.3, output: 0.3, ..of_spec };
         let mut state = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
         let (mut x, mut v) = (0.0, 0.0);
         for (step, lever) in [0.5, -0.2, 0.9, 0.1, 0.4].into_iter().enumerate() {
             DynCrane::set_input(&mut slide, 0, Some(lever));
             let mut last = Last(state.clone());
-            dynamics::Simulation::of(&slide, &state, &settings)
+            dynamics::Simulation::new(&slide, &state, &settings)
                 .at_time(0.3 * step as f64)
                 .watch(&mut last)
                 .expect("it runs");
@@ -144,7 +144,7 @@ fn a_controller_sets_inputs_between_steps() {
 fn a_motion_goes_on_from_its_memory() {
     let crane = with_inputs();
     let start = InitialState { q: vec![0.1, -0.1], v: vec![0.0, 0.2], x: Vec::new() };
-    let settings = Settings { method: Method::Bdf, ..Settings::of(crane.description()) };
+    let settings = Settings { method: Method::Bdf, ..Settings::from_description(crane.description()) };
     let mut motion = SteeredMotion::new(&crane, 0.0, &start, &settings, None).expect("it begins");
     let on = |motion: &mut SteeredMotion, pull: f64| -> Vec<f64> {
         let changes = [(1, Some(0.2)), (2, Some(pull))];

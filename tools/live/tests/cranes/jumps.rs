@@ -81,7 +81,7 @@ fn results_before_a_jump_know_nothing_of_it() {
             duration: 2.6,
             output: 0.0017,
             step: 1e-3,
-            ..Settings::of(crane.description())
+            ..Settings::from_description(crane.description())
         };
         let error = error(&crane, &settings, &|t| at(t, &jumps));
         // rk4's own error is 1e-10, that of the others some times the tolerance.
@@ -100,8 +100,13 @@ fn rk4_has_order_four_across_jumps() {
     let jumps = [(begin, a), (begin + 0.5 * duration, -a), (begin + duration, 0.0)];
     let crane = oscillator(&cart);
     let errors = [0.05, 0.025].map(|step| {
-        let settings =
-            Settings { method: Method::Rk4, step, duration: 2.5, output: 0.25, ..Settings::of(crane.description()) };
+        let settings = Settings {
+            method: Method::Rk4,
+            step,
+            duration: 2.5,
+            output: 0.25,
+            ..Settings::from_description(crane.description())
+        };
         error(&crane, &settings, &|t| at(t, &jumps))
     });
     let order = (errors[0] / errors[1]).log2();

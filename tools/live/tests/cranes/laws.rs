@@ -33,7 +33,7 @@ fn run_counted(
     v: f64,
 ) -> (Vec<[f64; 3]>, Statistics) {
     let crane: &dyn DynCrane = crane;
-    let defaults = Settings::of(crane.description());
+    let defaults = Settings::from_description(crane.description());
     let settings = Settings { method, tolerance, duration, output: 1e-3, step: 1e-5, audit: true, ..defaults };
     let start = InitialState { q: vec![0.0], v: vec![v], ..InitialState::default() };
     let energy = |sample: &Sample<'_>| crane.energies_at(sample.t, sample.q, sample.v).total();

@@ -25,7 +25,7 @@ fn a_drive_at_its_limit_accelerates_evenly() {
     let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
     let begin = slide.energies_at(0.0, &start.q, &start.v).total();
     for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
-        let defaults = Settings::of(slide.description());
+        let defaults = Settings::from_description(slide.description());
         let settings =
             Settings { method, tolerance: 1e-9, duration: 2.0, output: 0.01, step: 1e-4, audit: true, ..defaults };
         let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
@@ -57,7 +57,7 @@ fn power_and_rate_of_a_drive_are_limited() {
         let start = InitialState { q: vec![0.0], v: vec![v], ..InitialState::default() };
         let stored = slide.energies_at(0.0, &start.q, &start.v).total();
         for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince, Method::Rk4] {
-            let defaults = Settings::of(slide.description());
+            let defaults = Settings::from_description(slide.description());
             let settings =
                 Settings { method, tolerance: 1e-9, duration: 2.0, output: 0.01, step: 1e-4, audit: true, ..defaults };
             let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
@@ -122,7 +122,7 @@ fn drives_hold_other_positions_within_their_limit() {
          drives: [{{coordinate: arm_theta, stiffness: {stiffness}, max_effort: {limit}, motion: {{hold: 0}}}}]\n"
     ));
     for position in [-0.9, 0.6, 1.2] {
-        let found = statics::Problem::of(&arm).holding(&[position]).from(&[position]).solve();
+        let found = statics::Problem::new(&arm).holding(&[position]).from(&[position]).solve();
         assert!(found.is_stable(), "{position}: {found}");
         let expected = position + 98.1 * found.q[0].cos() / stiffness;
         assert!((found.q[0] - expected).abs() < 1e-14, "{position}: {} for {expected}", found.q[0]);

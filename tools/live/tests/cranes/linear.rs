@@ -314,11 +314,11 @@ fn a_moving_crane_on_oil_has_the_derivatives_of_its_equations() {
     )
     .unwrap();
     let slopes = |state: &[f64]| {
-        let (accelerations, rates) = force_states::accelerations(&crane, &StateAt::of(0.0, 2, state));
+        let (accelerations, rates) = force_states::accelerations(&crane, &StateAt::from_motion(0.0, 2, state));
         [&state[2..4], &accelerations, &rates].concat()
     };
     let values = |state: &[f64]| {
-        let all = quantities_at(&crane, &StateAt::of(0.0, 2, state));
+        let all = quantities_at(&crane, &StateAt::from_motion(0.0, 2, state));
         named(&crane, &["ram_force", "hook_x", "hook_vz"]).iter().map(|output| all[output.index]).collect::<Vec<f64>>()
     };
     let here = [&q[..], &v, &x].concat();
@@ -453,7 +453,7 @@ fn run(crane: &LiveCrane, q: &[f64], time: f64) -> Vec<f64> {
         duration: time,
         output: time,
         tolerance: 1e-11,
-        ..Settings::of(crane.description())
+        ..Settings::from_description(crane.description())
     };
     let mut end = Vec::new();
     (crane as &dyn DynCrane)

@@ -255,8 +255,8 @@ fn a_drive_of_the_spec_limits_the_load() {
     assert!(free.load > ratings[1].load.map(|load| 2.0 * load), "{:?}", free.load);
     // What is left out is said.
     let words = "the effort of arm_theta at most 8000 N m";
-    assert!(Coverage::of(&crane, &limits).not_considered.iter().any(|entry| entry == words));
-    assert!(Coverage::of(&crane, &limits_of(&crane)).considered.iter().any(|entry| entry == words));
+    assert!(Coverage::new(&crane, &limits).not_considered.iter().any(|entry| entry == words));
+    assert!(Coverage::new(&crane, &limits_of(&crane)).considered.iter().any(|entry| entry == words));
 }
 
 /// A joint that gives way until it meets its stop at 0.02 rad: k · 0.02 = m g R cos 0.02.
@@ -302,15 +302,15 @@ connectors:
     assert_close("the rope", rating.load.unwrap(), 2.0 * 4e3 / GRAVITY, ACCURACY);
     assert_eq!(rating.governing, Some(Limit::Tension { rope: 0 }));
     let words = "a tension of hoist of at most 4000 N";
-    assert!(Coverage::of(&crane, &limits_of(&crane)).considered.iter().any(|entry| entry == words));
+    assert!(Coverage::new(&crane, &limits_of(&crane)).considered.iter().any(|entry| entry == words));
     let mut heavy = crane;
     heavy.set_parameter(0, 900.0).unwrap();
     let rest = (&heavy as &dyn DynCrane).equilibrium(&statics::Settings::default());
     let said = cautions::of_pose(&heavy, &rest.q, cautions::BEND);
     // 900 kg · 9.81 m/s² / 2.
     assert_eq!(said, ["rope hoist pulls with 4414.5 N, more than its max_tension of 4000 N"]);
-    let start = Start::of(&heavy).unwrap();
-    let settings = Settings { duration: 0.2, output: 0.1, ..Settings::of(heavy.description()) };
+    let start = Start::new(&heavy).unwrap();
+    let settings = Settings { duration: 0.2, output: 0.1, ..Settings::from_description(heavy.description()) };
     let run = record(&heavy, &start, &settings, &mut |_| ControlFlow::Continue(())).unwrap();
     let said = cautions::of_run(&heavy, &run.table, cautions::BEND);
     assert!(said.iter().any(|caution| caution.contains("max_tension of 4000 N, at ")), "{said:?}");
@@ -343,8 +343,8 @@ fn the_ground_bears_a_pressure() {
     // 4000 kg · 9.81 m/s² / 4 / 0.04 m².
     assert_eq!(said.len(), 4, "{said:?}");
     assert_eq!(said[0], "a presses on the ground with 2.45 bar, which bears 2 bar");
-    let start = Start::of(&heavy).unwrap();
-    let settings = Settings { duration: 0.2, output: 0.1, ..Settings::of(heavy.description()) };
+    let start = Start::new(&heavy).unwrap();
+    let settings = Settings { duration: 0.2, output: 0.1, ..Settings::from_description(heavy.description()) };
     let run = record(&heavy, &start, &settings, &mut |_| ControlFlow::Continue(())).unwrap();
     let said = cautions::of_run(&heavy, &run.table, cautions::BEND);
     assert!(

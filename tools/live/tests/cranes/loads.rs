@@ -59,7 +59,7 @@ fn a_drive_holds_a_load_that_turns_with_its_link() {
     let moment = 2.0 * 40.0 - 0.5 * 30.0 + 9.0;
     assert!((arm.drive_efforts_at_rest(&rest.q)[0] + 0.25 * moment).abs() < 1e-9);
     assert!((rest.q[0] - 0.5 - 0.25 * moment / 1e3).abs() < 1e-12);
-    let later = statics::Problem::of(arm).at_time(5.0).from(&rest.q).settings(&settings).solve();
+    let later = statics::Problem::new(arm).at_time(5.0).from(&rest.q).settings(&settings).solve();
     assert!((later.q[0] - 0.5 - moment / 1e3).abs() < 1e-12, "{later}");
 }
 
@@ -80,12 +80,12 @@ fn a_load_that_begins_later_buckles_what_it_presses_on() {
         arm.tangent_stiffness(t, &[0.0], &arm.drive_positions_at(t), &mut stiffness);
         assert!((stiffness[0] - (100.0 - load)).abs() < 1e-12, "{t}: {stiffness:?}");
         assert_eq!(
-            statics::Problem::of(arm).at_time(t).from(&[0.0]).settings(&settings).solve().is_stable(),
+            statics::Problem::new(arm).at_time(t).from(&[0.0]).settings(&settings).solve().is_stable(),
             stable,
             "{t}"
         );
     }
-    let buckled = statics::Problem::of(arm).at_time(5.0).from(&[1.0]).settings(&settings).solve();
+    let buckled = statics::Problem::new(arm).at_time(5.0).from(&[1.0]).settings(&settings).solve();
     let psi = buckled.q[0];
     assert!(buckled.is_stable() && psi > 1.0 && (100.0 * psi - 150.0 * psi.sin()).abs() < 1e-8, "{buckled}: {psi}");
     // Newton's method with the right tangent: quadratic.
@@ -127,7 +127,7 @@ fn the_work_of_a_load_is_kinetic_energy() {
          loads: [{name: pull, link: slide, at: [0, 1, 2], force: [6, 5, 4], moment: [1, 2, 3]}]\n",
     );
     let slide: &dyn DynCrane = &slide;
-    let settings = Settings { audit: true, duration: 2.0, ..Settings::of(slide.description()) };
+    let settings = Settings { audit: true, duration: 2.0, ..Settings::from_description(slide.description()) };
     let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };
     let mut last = [0.0; 3];
     let run = slide.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
@@ -151,7 +151,7 @@ fn no_step_misses_a_short_push() {
     );
     let slide: &dyn DynCrane = &slide;
     for method in [Method::Bdf, Method::Rosenbrock, Method::DormandPrince] {
-        let of_spec = Settings::of(slide.description());
+        let of_spec = Settings::from_description(slide.description());
         let settings = Settings { method, tolerance: 1e-8, duration: 10.0, output: 10.0, ..of_spec };
         let mut speed = 0.0;
         let start = InitialState { q: vec![0.0], v: vec![0.0], ..InitialState::default() };

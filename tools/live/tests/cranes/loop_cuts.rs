@@ -264,11 +264,11 @@ fn cylinder(cut: Cut) -> String {
 }
 
 fn settings(crane: &dyn DynCrane, method: Method) -> Settings {
-    Settings { method, tolerance: 1e-8, step: 2e-4, audit: true, ..Settings::of(crane.description()) }
+    Settings { method, tolerance: 1e-8, step: 2e-4, audit: true, ..Settings::from_description(crane.description()) }
 }
 
 fn run(crane: &LiveCrane, method: Method) -> Table {
-    let start = Start::of(crane).unwrap_or_else(|failed| panic!("{failed:?}"));
+    let start = Start::new(crane).unwrap_or_else(|failed| panic!("{failed:?}"));
     let recorded = runs::record(crane, &start, &settings(crane, method), &mut |_| ControlFlow::Continue(()));
     recorded.unwrap_or_else(|failed| panic!("{failed:?}")).table
 }
@@ -317,7 +317,7 @@ fn on_column(crane: &dyn DynCrane, state: &StateAt<'_>, a: &[f64]) -> Vector3<f6
 
 /// The same at the end of a run.
 fn on_column_at_end(crane: &dyn DynCrane, method: Method) -> Vector3<f64> {
-    let start = Start::of(crane).expect("it rests");
+    let start = Start::new(crane).expect("it rests");
     let mut force = Vector3::zeros();
     let mut observe = |sample: &Sample<'_>| {
         let (a, _) = force_states::accelerations(crane, sample);
@@ -435,7 +435,7 @@ fn internal_forces_include_the_friction_of_loop_joints() {
     let features = Features { feet: false, beam: false, joint: RUBBING, more: rubbing };
     let crane = crane(AtRocker, features);
     let crane: &dyn DynCrane = &crane;
-    let start = Start::of(crane).expect("it rests");
+    let start = Start::new(crane).expect("it rests");
     let joints = |name: &str| {
         let body = crane.description().bodies.iter().position(|body| body.name == name).expect("a body");
         let is_joint = |cut: &Place| matches!(cut, Place::Joint { body: of } if *of == body);

@@ -63,7 +63,7 @@ fn rigid_drives_that_prescribe_too_much_are_named() {
          guess: {rocker_psi: -2}",
     );
     let crane: &dyn DynCrane = &crane;
-    let diagnosis = statics::Diagnosis::of(crane, &crane.equilibrium(&statics::Settings::default()));
+    let diagnosis = statics::Diagnosis::new(crane, &crane.equilibrium(&statics::Settings::default()));
     assert!(diagnosis.to_string().contains("joint hinge is open by"), "{diagnosis}");
     assert!(
         diagnosis.advice().starts_with("rigid drives prescribe crank_psi and coupler_psi"),
@@ -93,7 +93,7 @@ fn cylinders_that_hold_one_loop_together_are_named() {
         cylinder("two", "rocker_psi", "coupler", "rocker"),
     ));
     let crane: &dyn DynCrane = &crane;
-    let start = Start::of(crane).expect("it rests");
+    let start = Start::new(crane).expect("it rests");
     let cautions = loop_joints::cautions(crane, &start.q);
     assert!(cautions.len() == 1 && cautions[0].starts_with("one and two hold one loop together"), "{cautions:?}");
     // The springs of the drives, 0.05 rad apart, push against each other with 10 kN; the oil holds only the weight.

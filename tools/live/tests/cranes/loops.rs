@@ -150,7 +150,14 @@ fn end(
 
 /// One second with a method, at steps or a tolerance that leave little error.
 pub(crate) fn one_second(crane: &dyn DynCrane, method: Method) -> Settings {
-    Settings { method, duration: 1.0, step: 1e-3, output: 0.01, tolerance: 1e-9, ..Settings::of(crane.description()) }
+    Settings {
+        method,
+        duration: 1.0,
+        step: 1e-3,
+        output: 0.01,
+        tolerance: 1e-9,
+        ..Settings::from_description(crane.description())
+    }
 }
 
 fn difference(a: &[f64], b: &[f64]) -> f64 {
@@ -263,8 +270,13 @@ fn rk4_keeps_its_order() {
     let expected = FourBar::after(1.0, 0.8, 0.0);
     let errors: Vec<f64> = [0.02, 0.01, 0.005]
         .map(|step| {
-            let settings =
-                Settings { method: Method::Rk4, duration: 1.0, step, output: 0.1, ..Settings::of(bars.description()) };
+            let settings = Settings {
+                method: Method::Rk4,
+                duration: 1.0,
+                step,
+                output: 0.1,
+                ..Settings::from_description(bars.description())
+            };
             let [q, _] = end(bars, &settings, &state, &mut |_| {});
             (q[0] - expected[0]).abs()
         })
@@ -283,8 +295,13 @@ fn energy_is_kept_over_ten_seconds() {
     let q = FourBar::at(0.8).q.to_vec();
     let energy = |q: &[f64], v: &[f64]| bars.energies_at(0.0, q, v).total();
     let before = energy(&q, &[0.0; 3]);
-    let settings =
-        Settings { method: Method::Rk4, duration: 10.0, step: 1e-3, output: 0.1, ..Settings::of(bars.description()) };
+    let settings = Settings {
+        method: Method::Rk4,
+        duration: 10.0,
+        step: 1e-3,
+        output: 0.1,
+        ..Settings::from_description(bars.description())
+    };
     let state = InitialState { q, v: vec![0.0; 3], x: Vec::new() };
     let (mut worst, mut open) = (0.0_f64, 0.0_f64);
     end(bars, &settings, &state, &mut |sample| {
@@ -314,7 +331,7 @@ fn a_parallelogram_keeps_the_orientation_of_its_platform() {
         duration: 2.0,
         output: 0.05,
         tolerance: 1e-6,
-        ..Settings::of(parallel.description())
+        ..Settings::from_description(parallel.description())
     };
     let state = InitialState::at_rest(parallel.guess());
     let [q, _] = end(parallel, &settings, &state, &mut |sample| {
@@ -423,7 +440,7 @@ fn a_rod_is_the_limit_of_stiff_springs() {
     let pose = |crane: LiveCrane, start: Option<&[f64]>| {
         let crane: &dyn DynCrane = &crane;
         let start = start.map_or_else(|| crane.guess(), <[f64]>::to_vec);
-        let equilibrium = statics::Problem::of(crane).from(&start).solve();
+        let equilibrium = statics::Problem::new(crane).from(&start).solve();
         assert!(equilibrium.is_stable(), "{equilibrium}");
         equilibrium.q
     };
@@ -442,7 +459,7 @@ fn a_rod_is_the_limit_of_stiff_springs() {
 }
 
 fn diagnosis_advice(crane: &dyn DynCrane, equilibrium: &statics::Equilibrium) -> String {
-    statics::Diagnosis::of(crane, equilibrium).advice()
+    statics::Diagnosis::new(crane, equilibrium).advice()
 }
 
 /// An axis that is written in one frame only is 90° off in the other, which is turned: about two directions, whose sines are one together.
@@ -451,7 +468,7 @@ fn axes_that_differ_are_named_with_their_angle() {
     let turned = four_bar(0.8, "{pin: {axis: [0, 1, 0]}}", "");
     let turned: &dyn DynCrane = &turned;
     let equilibrium = turned.equilibrium(&statics::Settings::default());
-    let diagnosis = statics::Diagnosis::of(turned, &equilibrium);
+    let diagnosis = statics::Diagnosis::new(turned, &equilibrium);
     let mut states = vec![Vector3::zeros(); turned.loop_equations()];
     turned.loop_states(&equilibrium.q, &[0.0; 3], &mut states);
     let sines = [states[3].x, states[4].x];
@@ -477,13 +494,15 @@ fn a_loop_that_cannot_close_says_so() {
     let short: &dyn DynCrane = &short;
     let equilibrium = short.equilibrium(&statics::Settings::default());
     assert!(!equilibrium.is_stable());
-    let diagnosis = statics::Diagnosis::of(short, &equilibrium).to_string();
+    let diagnosis = statics::Diagnosis::new(short, &equilibrium).to_string();
     assert!(diagnosis.contains("joint hinge is open by 100.0"), "{diagnosis}");
     assert!(diagnosis_advice(short, &equilibrium).contains("write a `guess:`"));
     assert!(loop_joints::cautions(short, &equilibrium.q).iter().all(|caution| !caution.contains("reactions")));
-    let run = short.simulate(&InitialState::at_rest(short.guess()), &Settings::of(short.description()), &mut |_| {
-        ControlFlow::Continue(())
-    });
+    let run = short.simulate(
+        &InitialState::at_rest(short.guess()),
+        &Settings::from_description(short.description()),
+        &mut |_| ControlFlow::Continue(()),
+    );
     let stopped = run.expect_err("an open loop").to_string();
     assert!(stopped.contains("hinge along x is open by 100.0"), "{stopped}");
 }
@@ -612,7 +631,7 @@ fn the_parallel_harvester_moves_its_tip_on_a_level() {
     let mut q = harvester_crane.guess();
     for angle in [70.0, 60.0, 50.0, 40.0, 32.0] {
         let drives = [0.3, f64::to_radians(angle), 0.41];
-        let rest = statics::Problem::of(harvester_crane).holding(&drives).from(&q).solve();
+        let rest = statics::Problem::new(harvester_crane).holding(&drives).from(&q).solve();
         assert!(rest.is_stable(), "{rest}");
         q.clone_from(&rest.q);
         let (theta, extension) = (q[1], q[4]);

@@ -79,8 +79,8 @@ fn parameters_count() {
 #[test]
 fn a_run_gives_the_time() {
     let crane = crane("2", "{quintic: {from: 3.0, to: 3.3, duration: 1}}");
-    let start = Start::of(&crane).expect("it stands");
-    let settings = Settings { duration: 2.0, output: 0.1, ..Settings::of(crane.description()) };
+    let start = Start::new(&crane).expect("it stands");
+    let settings = Settings { duration: 2.0, output: 0.1, ..Settings::from_description(crane.description()) };
     let run = runs::record(&crane, &start, &settings, &mut |_| ControlFlow::Continue(())).expect("it runs");
     let said = cautions::of_run(&crane, &run.table, cautions::BEND).join("; ");
     // Beyond its end after an overshoot, which damping keeps below a millimetre.
@@ -115,8 +115,8 @@ fn a_stage_that_is_pushed_in_too_far_is_told() {
     assert!(said.contains("stage is pushed 0.100 m too far into boom with stage_x at -0.400 m: "), "{said}");
     assert!(!at_rest(&crane("2", "{hold: -0.3}")).contains("too far"));
     let moving = crane("2", "{quintic: {from: 0, to: -0.4, duration: 1}}");
-    let start = Start::of(&moving).expect("it stands");
-    let settings = Settings { duration: 2.0, output: 0.1, ..Settings::of(moving.description()) };
+    let start = Start::new(&moving).expect("it stands");
+    let settings = Settings { duration: 2.0, output: 0.1, ..Settings::from_description(moving.description()) };
     let run = runs::record(&moving, &start, &settings, &mut |_| ControlFlow::Continue(())).expect("it runs");
     let said = cautions::of_run(&moving, &run.table, cautions::BEND).join("; ");
     assert!(said.contains(" m too far into boom with stage_x at -0.40"), "{said}");
@@ -141,8 +141,9 @@ fn a_stage_that_stands_crosswise_is_told() {
 #[test]
 fn rounding_is_no_error_of_a_run() {
     let crane = crane("2", "{quintic: {from: 1.0, to: 1.5, duration: 1}}");
-    let start = Start::of(&crane).expect("it stands");
-    let settings = Settings { duration: 1.0, output: 0.1, audit: true, ..Settings::of(crane.description()) };
+    let start = Start::new(&crane).expect("it stands");
+    let settings =
+        Settings { duration: 1.0, output: 0.1, audit: true, ..Settings::from_description(crane.description()) };
     let go = &mut |_| ControlFlow::Continue(());
     let recorded = runs::record_checked(&crane, &start, &settings, (true, cautions::BEND), go).expect("it runs");
     assert!(!recorded.cautions.iter().any(|caution| caution.contains("twist")), "{:?}", recorded.cautions);

@@ -32,7 +32,7 @@ fn motions_stand_at_rest() {
     let crane =
         LiveCrane::from_spec(&SourceFile::new("crane.yaml", CRANE)).unwrap_or_else(|mistakes| panic!("\n{mistakes}"));
     let crane: &dyn DynCrane = &crane;
-    let start = Start::of(crane).expect("it rests");
+    let start = Start::new(crane).expect("it rests");
     let mut recording = Recording::new(crane);
     for step in 0..=16 {
         recording.push_rest(0.25 * f64::from(step), &start.q, &[]);
@@ -44,7 +44,7 @@ fn motions_stand_at_rest() {
     for (column, expected) in
         [("column_psi_drive_torque", 0.0), ("trolley_x_drive_force", 0.0), ("hoist_force", weight)]
     {
-        let Extremes { minimum, maximum, .. } = Extremes::of(&along.table, column);
+        let Extremes { minimum, maximum, .. } = Extremes::of_column(&along.table, column);
         for found in [minimum, maximum] {
             assert!((found - expected).abs() < 1e-6 * weight, "{column}: {minimum} to {maximum}");
         }

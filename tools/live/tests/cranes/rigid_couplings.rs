@@ -96,7 +96,8 @@ fn geared_pendulums_accelerate_as_one() {
                     && (accelerations[1] - ratio * acceleration).abs() < 1e-13,
                 "{accelerations}"
             );
-            let table = run(crane, Settings { duration: 0.01, ..Settings::of(crane.description()) }, &start);
+            let table =
+                run(crane, Settings { duration: 0.01, ..Settings::from_description(crane.description()) }, &start);
             let first = column(&table, "gear_torque").next();
             assert!(first.is_some_and(|first| (first - force).abs() < 1e-12), "{first:?} N m instead of {force}");
             // About its axis, a joint transmits what the coupling does: each pendulum exerts −Q on the ground.
@@ -233,7 +234,8 @@ fn a_second_stage_follows_the_first_exactly() {
         // With the drive held elsewhere, the second stage is where the chain has it.
         let moved = statics::RestSearch { crane, positions: &[0.9] }.find_from_guess();
         assert!((moved.q[0] - 0.9).abs() < 1e-4 && (moved.q[1] - moved.q[0] - 0.3).abs() < 1e-15, "{:?}", moved.q);
-        let settings = Settings { tolerance: 1e-7, duration: 4.0, output: 0.1, ..Settings::of(crane.description()) };
+        let settings =
+            Settings { tolerance: 1e-7, duration: 4.0, output: 0.1, ..Settings::from_description(crane.description()) };
         let table = run(crane, settings, &InitialState { q, v: vec![0.0; 2], ..InitialState::default() });
         let last = |name: &str| column(&table, name).last().unwrap_or(f64::NAN);
         // The work of the drive is the potential energy gained by both, up to the tolerance.

@@ -22,7 +22,7 @@ fn shipped(name: &str, changes: &str) -> LiveCrane {
 }
 
 fn settings(crane: &LiveCrane, duration: f64, output: f64, tolerance: f64) -> Settings {
-    let own = Settings::of(crane.description());
+    let own = Settings::from_description(crane.description());
     Settings { duration, output, tolerance, audit: false, method: Method::Rosenbrock, ..own }
 }
 
@@ -32,7 +32,7 @@ type State = Option<(Vec<f64>, Vec<f64>)>;
 fn start(crane: &LiveCrane, from: &State) -> Start {
     match from {
         Some((q, v)) => Start::with(crane, 0.0, Some(q), Some(v)),
-        None => Start::of(crane),
+        None => Start::new(crane),
     }
     .unwrap_or_else(|failed| panic!("{failed}"))
 }

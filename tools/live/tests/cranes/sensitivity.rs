@@ -326,7 +326,7 @@ fn a_parameter_that_is_given_twice_has_its_derivatives_twice() {
 
 /// The largest load within limits, and its derivatives by parameters of these names.
 fn largest_load(crane: &LiveCrane, asked: &Envelope, parameters: &[usize]) -> (LargestLoad, Sensitivity) {
-    let largest = LargestLoad::of(crane, asked).unwrap_or_else(|none| panic!("{none:?}"));
+    let largest = LargestLoad::new(crane, asked).unwrap_or_else(|none| panic!("{none:?}"));
     let mut loaded = crane.clone();
     loaded.set_parameter(asked.load, asked.factor * largest.load).unwrap();
     let all: Vec<usize> = parameters.iter().copied().chain([asked.load]).collect();
@@ -479,7 +479,7 @@ guess: {load_psi: -20 deg}
             let limits = Limits { of_parts: vec![part], ..Limits::none(crane.description()) };
             let loads = range_of_loads(&crane, 0, None);
             let asked = Envelope { axes: Axes::default(), load: 0, loads, limits, factor: 1.0 };
-            let largest = LargestLoad::of(&crane, &asked).unwrap_or_else(|none| panic!("{place}: {none:?}"));
+            let largest = LargestLoad::new(&crane, &asked).unwrap_or_else(|none| panic!("{place}: {none:?}"));
             let mut loaded = crane;
             loaded.set_parameter(0, largest.load).unwrap();
             let settings = Settings { frequencies: 0 };

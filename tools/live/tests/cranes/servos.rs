@@ -115,7 +115,7 @@ fn measured(gain: f64) -> [f64; 2] {
         duration: 2.5,
         output: 1e-3,
         tolerance: 1e-8,
-        ..Settings::of(crane.description())
+        ..Settings::from_description(crane.description())
     };
     let mut speeds = Vec::new();
     crane
@@ -163,8 +163,8 @@ fn the_caution_names_the_servo_and_a_gain_that_is_stable() {
 fn the_end_of_a_run_is_looked_at() {
     let moved = lift_moving(160.0, "{table: {times: [0, 1], values: [-0.19, 0.1]}}");
     let crane: &dyn DynCrane = &moved;
-    let settings = Settings { duration: 1.0, ..Settings::of(crane.description()) };
-    let start = Start::of(crane).expect("a start");
+    let settings = Settings { duration: 1.0, ..Settings::from_description(crane.description()) };
+    let start = Start::new(crane).expect("a start");
     let at_start = crane.equilibrium(&crane_model::statics::Settings::default());
     assert_eq!(unstable_servos(crane, 0.0, &at_start.q).expect("modes"), []);
     let found =

@@ -24,7 +24,7 @@ fn rest(crane: &dyn DynCrane) -> Vec<f64> {
 /// The last sample of a run from rest: coordinates, rates, work of the winch.
 fn end_of_run(crane: &dyn DynCrane, duration: f64) -> (Vec<f64>, Vec<f64>, f64) {
     let start = InitialState { q: rest(crane), v: vec![0.0; crane.size()], ..InitialState::default() };
-    let of_spec = Settings::of(crane.description());
+    let of_spec = Settings::from_description(crane.description());
     let settings = Settings { tolerance: 1e-7, duration, output: duration, audit: true, ..of_spec };
     let mut end = (Vec::new(), Vec::new(), f64::NAN);
     let run = crane.simulate(&start, &settings, &mut |sample: &Sample<'_>| {
@@ -104,7 +104,7 @@ fn a_winch_winds_up_a_stretched_rope() {
     let tension = MASS * GRAVITY;
     let place = |free: f64| TOP + to_the_top() - free * (1.0 + tension / axial);
     let whole: &dyn DynCrane = &tackle;
-    let later = statics::Problem::of(whole).at_time(20.0).from(&rest(whole)).solve();
+    let later = statics::Problem::new(whole).at_time(20.0).from(&rest(whole)).solve();
     for (t, q, free) in [(0.0, &rest(whole), from), (20.0, &later.q, to)] {
         // A few rounding errors of the length.
         assert!((q[0] - place(free)).abs() < 1e-9, "{} instead of {}", q[0], place(free));

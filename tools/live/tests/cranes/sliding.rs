@@ -51,14 +51,15 @@ fn a_block_stands_up_to_the_angle_of_friction() {
             assert_eq!(found.is_stable(), stands, "{stiffness:e}, {share}: {found}");
             if !stands {
                 assert!(matches!(found.status, Status::Slides { .. }), "{found}");
-                assert!(matches!(Diagnosis::of(crane, &found), Diagnosis::Slides { .. }));
+                assert!(matches!(Diagnosis::new(crane, &found), Diagnosis::Slides { .. }));
             }
         }
     }
 }
 
 fn run(block: &LiveCrane, method: Method, tolerance: f64, start: &Start) -> Table {
-    let settings = Settings { method, tolerance, audit: true, step: 1e-4, ..Settings::of(block.description()) };
+    let settings =
+        Settings { method, tolerance, audit: true, step: 1e-4, ..Settings::from_description(block.description()) };
     let recorded = record(block, start, &settings, &mut |_| ControlFlow::Continue(()));
     recorded.unwrap_or_else(|failed| panic!("{method:?}: {failed:?}")).table
 }
@@ -109,7 +110,7 @@ fn a_block_that_was_pushed_sticks() {
     let push = "loads:\n  - {name: push, link: block, at: [0, 0, 0.2], force: [600, 150, 0], scale: {table: {\
                 times: [0, 0.1, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 9], values: [0, 1, 1, 0, 0, 0, 0, 0, 0]}}}\nrun: {duration: 4, output: 0.1}\n";
     let block = block(0.0, 1e6, 1e3, push);
-    let start = Start::of(&block).expect("it stands");
+    let start = Start::new(&block).expect("it stands");
     for (method, tolerance) in [(Method::Bdf, 1e-6), (Method::Rosenbrock, 1e-6), (Method::Rk4, 1e-6)] {
         let table = run(&block, method, tolerance, &start);
         let [one, slid] = [1.0, 4.0].map(|t| value(&table, "a_slid_x", t));
@@ -133,7 +134,7 @@ fn feet_that_stick_are_anchored_feet() {
     let anchored = text.replace(&format!("one_sided: true, friction_coefficient: {FRICTION}, "), "");
     let tables = [&text, &anchored].map(|text| {
         let block = crane(text);
-        run(&block, Method::DormandPrince, 1e-9, &Start::of(&block).expect("it stands"))
+        run(&block, Method::DormandPrince, 1e-9, &Start::new(&block).expect("it stands"))
     });
     for name in ["block_x", "block_y", "block_z", "block_phi", "a_reaction_x", "d_reaction_z"] {
         let [one, other] = tables.each_ref().map(|table| table.values(name).expect("a column").collect::<Vec<f64>>());
@@ -151,8 +152,8 @@ fn columns_are_the_states_of_feet() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../specs/eight_link_hydraulic.yaml");
     let source = build::open(path.as_ref()).expect("a shipped crane");
     let crane = LiveCrane::from_spec(&source).expect("valid");
-    let settings = Settings { duration: 1.0, output: 0.5, ..Settings::of(crane.description()) };
-    let start = Start::of(&crane).expect("it stands");
+    let settings = Settings { duration: 1.0, output: 0.5, ..Settings::from_description(crane.description()) };
+    let start = Start::new(&crane).expect("it stands");
     let recorded = record(&crane, &start, &settings, &mut |_| ControlFlow::Continue(())).expect("a run");
     let names: Vec<String> = force_states::columns(crane.description());
     let initial = InitialState { q: start.q.clone(), v: start.v.clone(), x: start.x.clone() };

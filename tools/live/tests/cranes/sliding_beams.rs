@@ -319,7 +319,7 @@ fn the_slope_of_the_tip_over_the_extension_does_not_jump() {
     // Both pads pass a border of sections at 0.3 m and at 0.8 m.
     let heights: Vec<f64> = (50..70)
         .map(|index| {
-            let found = statics::Problem::of(crane).at_time(time(STEP * f64::from(index))).from(&q).solve();
+            let found = statics::Problem::new(crane).at_time(time(STEP * f64::from(index))).from(&q).solve();
             assert!(found.is_stable(), "{found}");
             q.clone_from(&found.q);
             crane.points_at(&q)[0].z
@@ -336,7 +336,7 @@ fn the_slope_of_the_tip_over_the_extension_does_not_jump() {
 /// Where the tip is after a run that extends under weight, work and loss of energy, and the error of their balance.
 pub(super) fn run(crane: &LiveCrane, method: Method, tolerance: f64) -> ([f64; 3], f64, f64) {
     let crane: &dyn DynCrane = crane;
-    let defaults = Settings::of(crane.description());
+    let defaults = Settings::from_description(crane.description());
     let settings = Settings { method, tolerance, duration: 0.6, output: 0.05, step: 5e-5, audit: true, ..defaults };
     let (mut first, mut off, mut work) = (None, 0.0_f64, 0.0_f64);
     let mut tip = [0.0; 3];

@@ -39,8 +39,8 @@ fn cautions_of(crane: &LiveCrane) -> [String; 2] {
     let crane: &dyn DynCrane = crane;
     let rest = crane.equilibrium(&statics::Settings::default());
     assert!(rest.is_stable(), "{rest}");
-    let start = Start::of(crane).expect("it stands");
-    let settings = Settings { duration: 1.2, output: 0.1, ..Settings::of(crane.description()) };
+    let start = Start::new(crane).expect("it stands");
+    let settings = Settings { duration: 1.2, output: 0.1, ..Settings::from_description(crane.description()) };
     let run = runs::record(crane, &start, &settings, &mut |_| ControlFlow::Continue(())).expect("it runs");
     [cautions::of_pose(crane, &rest.q, 20.0).join("; "), cautions::of_run(crane, &run.table, 20.0).join("; ")]
 }

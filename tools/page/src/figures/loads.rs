@@ -29,7 +29,7 @@ pub(super) fn drives(crane: &Shown<'_>) -> Vec<Figure> {
         let coordinates = description.drives.iter().map(|drive| &description.coordinates[drive.coordinate]);
         let of_unit = coordinates.filter(|coordinate| coordinate.kind.force_unit() == unit);
         let all = of_unit.map(|coordinate| {
-            let of = Extremes::of(&crane.table, &drive_effort(&coordinate.name, coordinate.kind));
+            let of = Extremes::of_column(&crane.table, &drive_effort(&coordinate.name, coordinate.kind));
             if -of.minimum > of.maximum {
                 (coordinate, of.minimum, of.time_of_minimum)
             } else {
@@ -54,7 +54,7 @@ pub(super) fn reactions(crane: &Shown<'_>) -> Option<Figure> {
     let all: Vec<Extremes> = description
         .supports
         .iter()
-        .map(|support| Extremes::of(&crane.table, &vertical_reaction(&support.name)))
+        .map(|support| Extremes::of_column(&crane.table, &vertical_reaction(&support.name)))
         .collect();
     let least = (0..all.len()).min_by(|&a, &b| all[a].minimum.total_cmp(&all[b].minimum))?;
     let most = (0..all.len()).max_by(|&a, &b| all[a].maximum.total_cmp(&all[b].maximum))?;
@@ -156,7 +156,7 @@ pub(super) fn pressure(crane: &Shown<'_>) -> Option<Figure> {
 pub(super) fn strokes(crane: &Shown<'_>) -> Option<Figure> {
     let cylinders = crane.subject.crane.description().cylinders.iter();
     let beyond = cylinders.filter_map(|info| {
-        let [length, time] = beyond_stroke(info, &Extremes::of(&crane.table, &format!("{}_length", info.name)))?;
+        let [length, time] = beyond_stroke(info, &Extremes::of_column(&crane.table, &format!("{}_length", info.name)))?;
         Some((info, (length - info.retracted) / info.stroke, time))
     });
     let beyond: Vec<_> = beyond.collect();
@@ -173,7 +173,7 @@ pub(super) fn strokes(crane: &Shown<'_>) -> Option<Figure> {
 /// The largest error of the energy balance of a run.
 pub(super) fn energy(crane: &Shown<'_>) -> Option<Figure> {
     crane.subject.run?;
-    let of = Extremes::of(&crane.table, "energy_balance");
+    let of = Extremes::of_column(&crane.table, "energy_balance");
     let time = if -of.minimum > of.maximum { of.time_of_minimum } else { of.time_of_maximum };
     let value = quantity(of.size(), "J");
     Some(Figure::new("energy_balance", "error of the energy balance", value, format!("largest, {}", crane.when(time))))

@@ -17,14 +17,14 @@ use crate::{
 };
 
 /// A line of the summary.
-struct Line {
+struct SignedLine {
     name: String,
     /// One or several sentences.
     texts: Vec<String>,
     verdict: Verdict,
 }
 
-impl Line {
+impl SignedLine {
     fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self { name: name.into(), texts: vec![text.into()], verdict: Verdict::Unlimited }
     }
@@ -42,22 +42,22 @@ pub(crate) fn summary(crane: &Shown<'_>, figures: &[Figure], command: Option<&st
     let limits = "utilisation 100 %: equivalent stress of beam theory equals yield stress over the safety factor of the spec; \
                   tipping margin 0: overturning equals stabilising moment; feet carry the crane; pressure below the relief valves";
     let mut lines = vec![
-        Line::new("crane", format!("{} ({})", description.title, description.name)),
-        Line { verdict, ..Line::new("verdict", sentence) },
-        Line::new("load and other parameters", parameters(crane.subject.crane)),
-        Line::new("analysis", analysis(settings, recorded)),
-        Line::new("limits", limits),
+        SignedLine::new("crane", format!("{} ({})", description.title, description.name)),
+        SignedLine { verdict, ..SignedLine::new("verdict", sentence) },
+        SignedLine::new("load and other parameters", parameters(crane.subject.crane)),
+        SignedLine::new("analysis", analysis(settings, recorded)),
+        SignedLine::new("limits", limits),
     ];
     lines.extend(figures.iter().map(|figure| {
         let text = format!("{} ({})", figure.value, figure.note);
-        Line { verdict: figure.verdict, ..Line::new(figure.title.clone(), text) }
+        SignedLine { verdict: figure.verdict, ..SignedLine::new(figure.title.clone(), text) }
     }));
-    lines.push(Line::new("largest difference from a finer run", errors(recorded)));
-    lines.push(Line { texts: cautions(recorded), ..Line::new("cautions", "") });
-    lines.push(Line::new("program", format!("{} {}", program.name, program.version)));
-    lines.push(Line::new("hash of the spec", description.spec_hash.as_str()));
-    lines.extend(command.map(|command| Line::new("command", command)));
-    lines.iter().map(Line::json).collect()
+    lines.push(SignedLine::new("largest difference from a finer run", errors(recorded)));
+    lines.push(SignedLine { texts: cautions(recorded), ..SignedLine::new("cautions", "") });
+    lines.push(SignedLine::new("program", format!("{} {}", program.name, program.version)));
+    lines.push(SignedLine::new("hash of the spec", description.spec_hash.as_str()));
+    lines.extend(command.map(|command| SignedLine::new("command", command)));
+    lines.iter().map(SignedLine::json).collect()
 }
 
 /// Live parameters with their values; angles in degrees as well.
@@ -85,7 +85,7 @@ fn errors(recorded: &Recorded) -> String {
     let of_kind = headlines(&recorded.table.columns).into_iter().filter_map(|kind| {
         let differences = kind.names.iter().filter_map(|name| verification.difference(&recorded.table, name));
         let greatest = differences.filter(|difference| difference.is_finite()).max_by(f64::total_cmp)?;
-        let sizes = kind.names.iter().map(|name| Extremes::of(&recorded.table, name).size());
+        let sizes = kind.names.iter().map(|name| Extremes::of_column(&recorded.table, name).size());
         let size = sizes.fold(0.0, f64::max);
         let [error, unit] = [Cell::error_of_unit(greatest, &kind.unit), Cell::unit_of(&kind.unit)];
         Some(format!("{} {} (of up to {})", error.text(), unit.text(), super::quantity(size, &kind.unit)))

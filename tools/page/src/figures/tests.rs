@@ -24,8 +24,9 @@ fn shown(name: &str, text: &str) -> (LiveCrane, Recorded, Value) {
     let live = live(name, text);
     let crane: &dyn crane_model::dyn_crane::DynCrane = &live;
     let equilibrium = crane.equilibrium(&statics::Settings::default());
-    let start = Start::of(crane).expect("it stands");
-    let settings = Settings { method: Method::RECOMMENDED, audit: true, ..Settings::of(crane.description()) };
+    let start = Start::new(crane).expect("it stands");
+    let settings =
+        Settings { method: Method::RECOMMENDED, audit: true, ..Settings::from_description(crane.description()) };
     let go = &mut |_| std::ops::ControlFlow::Continue(());
     let recorded = record_checked(crane, &start, &settings, (false, 20.0), go).expect("it runs");
     let run = Some((&settings, &recorded));

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 /// The unit of a column in SI.
 pub(super) fn si(unit: &str) -> &str {
-    match DisplayUnit::of(unit) {
+    match DisplayUnit::find(unit) {
         Some(unit) => unit.si(),
         None => unit,
     }
@@ -72,7 +72,7 @@ impl Cell {
     /// A number in SI that people read in a unit; `unit` may be one of SI.
     #[must_use]
     pub fn shown(number: f64, unit: &str) -> Self {
-        DisplayUnit::of(unit).map_or(Cell::Number(number), |unit| Cell::Shown(number, unit))
+        DisplayUnit::find(unit).map_or(Cell::Number(number), |unit| Cell::Shown(number, unit))
     }
 
     /// A number in a unit of SI, as people read all numbers of that unit: pressures in bar, angles in degrees.

@@ -25,7 +25,7 @@ pub const VALUE: &str = "value";
 
 impl Heading {
     /// The heading of a column about one of several things; about the only one if the label is [`VALUE`].
-    pub fn of(label: &str, name: &str) -> Self {
+    pub fn about(label: &str, name: &str) -> Self {
         let label = if label == VALUE { "" } else { label };
         Self { label: label.to_owned(), ..name.into() }
     }

@@ -71,7 +71,7 @@ pub fn stable_steps(description: &Description, poses: &[Pose]) -> Grid {
     };
     let mut grid = Grid::new("limits", title, &headers);
     for method in Method::ALL {
-        let bound = Bound::of(poses, method);
+        let bound = Bound::smallest(poses, method);
         let step = bound.as_ref().map(|bound| bound.limit.step);
         let why = bound.as_ref().map_or_else(|| "nothing".to_owned(), |bound| cause(description, &bound.limit.mode));
         grid.row([

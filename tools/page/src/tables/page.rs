@@ -39,9 +39,9 @@ pub fn of_page(cases: &[Case<'_>], runs: &[&Recorded], bend: f64, changes: Optio
         add_runs(&mut report, &of_runs.collect::<Vec<_>>());
     }
     if case.equilibrium.is_stable() {
-        let modes = undamped_modes(case, changes).map_err(|error| Reason::Modes(error).of(&description.name))?;
+        let modes = undamped_modes(case, changes).map_err(|error| Reason::Modes(error).for_crane(&description.name))?;
         report.grid(modes);
-        let poses = manoeuvre(case.crane, &Start::of(case.crane)?, affordable_poses(case.crane.size()))?;
+        let poses = manoeuvre(case.crane, &Start::new(case.crane)?, affordable_poses(case.crane.size()))?;
         report.grid(damped_modes(description, poses.first().map_or(&[], |pose| &pose.modes)));
         report.grid(stable_steps(description, &poses));
     }

@@ -226,8 +226,11 @@ mod tests {
         report.fact("mean step", 0.01, "s");
         report.line("mast", "at rest", "");
         report.value("stable", true);
-        let headings =
-            vec!["mode".into(), Heading::of("rigid", "frequency [Hz]"), Heading::of("flexible", "frequency [Hz]")];
+        let headings = vec![
+            "mode".into(),
+            Heading::about("rigid", "frequency [Hz]"),
+            Heading::about("flexible", "frequency [Hz]"),
+        ];
         let mut grid = Grid::with_headings("modes", "Modes", headings);
         assert_eq!(grid.headers(), ["mode", "rigid frequency [Hz]", "flexible frequency [Hz]"]);
         grid.row([1_usize.into(), 2.5.into(), Cell::Empty]);

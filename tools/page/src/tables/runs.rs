@@ -24,7 +24,8 @@ pub fn extremes(runs: &[(&str, &Recorded)]) -> Grid {
                 if run.table.values(name).is_none() {
                     continue;
                 }
-                let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } = Extremes::of(&run.table, name);
+                let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } =
+                    Extremes::of_column(&run.table, name);
                 let found = run.verification.as_ref().and_then(|found| found.find_errors(&run.table, name));
                 let uncertain =
                     [0, 1].map(|k| found.map_or(Cell::Empty, |found| Cell::error_of_unit(found[k], &kind.unit)));
@@ -41,7 +42,7 @@ pub fn extremes(runs: &[(&str, &Recorded)]) -> Grid {
 
 /// Work, energy balance and time of runs, one column each.
 fn summary(runs: &[(&str, &Recorded)], duties: &[Duties]) -> Grid {
-    let values = runs.iter().map(|(label, _)| Heading::of(label, VALUE));
+    let values = runs.iter().map(|(label, _)| Heading::about(label, VALUE));
     let headings = [Heading::from("quantity")].into_iter().chain(values).chain(["unit".into()]).collect();
     let mut grid = Grid::with_headings("summary", "Run", headings);
     let mut row = |name: &str, unit: &str, values: &mut dyn Iterator<Item = Option<f64>>| {
@@ -84,7 +85,7 @@ pub fn add_runs(report: &mut Report, runs: &[(&str, &dyn DynCrane, &Recorded)]) 
 /// Adds work and time of some runs, and what drives and cylinders do.
 pub fn add_duties(report: &mut Report, runs: &[(&str, &dyn DynCrane, &Recorded)]) {
     let recorded: Vec<(&str, &Recorded)> = runs.iter().map(|(label, _, run)| (*label, *run)).collect();
-    let duties: Vec<Duties> = runs.iter().map(|(_, crane, run)| Duties::of(crane.description(), &run.table)).collect();
+    let duties: Vec<Duties> = runs.iter().map(|(_, crane, run)| Duties::new(crane.description(), &run.table)).collect();
     let labelled: Vec<(&str, &Duties)> = runs.iter().map(|(label, ..)| *label).zip(&duties).collect();
     report.grid(summary(&recorded, &duties));
     report.grid(of_drives(&labelled));

@@ -41,7 +41,7 @@ impl<'a> Case<'a> {
         if self.equilibrium.is_stable() {
             Ok(())
         } else {
-            Err(Reason::no_equilibrium(self.crane, &self.equilibrium).of(&self.crane.description().name))
+            Err(Reason::no_equilibrium(self.crane, &self.equilibrium).for_crane(&self.crane.description().name))
         }
     }
 
@@ -140,34 +140,34 @@ pub fn deflection(first: &Case<'_>, second: &Case<'_>) -> Grid {
 const AXES: &[&str] = &["x", "y", "z"];
 
 /// A row of a table of one crane: what it is about, its values, and their unit.
-struct Row {
+struct StaticsRow {
     words: Vec<String>,
     values: Vec<Cell>,
     unit: Cell,
 }
 
-impl Row {
+impl StaticsRow {
     fn new(words: &[&str], value: Cell, unit: Cell) -> Self {
-        Row { words: words.iter().map(ToString::to_string).collect(), values: vec![value], unit }
+        StaticsRow { words: words.iter().map(ToString::to_string).collect(), values: vec![value], unit }
     }
 
     /// A number in SI units, as people read all numbers of the unit.
     fn of_unit(words: &[&str], value: f64, unit: &str) -> Self {
-        Row::new(words, Cell::of_unit(value, unit), Cell::unit_of(unit))
+        StaticsRow::new(words, Cell::of_unit(value, unit), Cell::unit_of(unit))
     }
 
     /// A number in SI units that people read in a unit.
     fn shown(words: &[&str], value: Option<f64>, unit: &str) -> Self {
         let value = value.map_or(Cell::Empty, |value| Cell::shown(value, unit));
-        Row::new(words, value, DisplayUnit::of(unit).map_or(unit.into(), Cell::ShownUnit))
+        StaticsRow::new(words, value, DisplayUnit::find(unit).map_or(unit.into(), Cell::ShownUnit))
     }
 
     fn vector<T: Into<Cell>>(word: &str, values: [T; 3], unit: &str) -> Self {
-        Row { values: values.map(Into::into).into(), ..Row::new(&[word], Cell::Empty, unit.into()) }
+        StaticsRow { values: values.map(Into::into).into(), ..StaticsRow::new(&[word], Cell::Empty, unit.into()) }
     }
 
     /// Whether both are about one thing: what has one name in two cranes.
-    fn is_about(&self, other: &Row) -> bool {
+    fn is_about(&self, other: &StaticsRow) -> bool {
         self.words == other.words && self.unit.text() == other.unit.text()
     }
 }
@@ -178,19 +178,20 @@ fn side_by_side(
     words: &[&str],
     columns: &[&str],
     cases: &[Case<'_>],
-    rows: impl Fn(&Case<'_>) -> Vec<Row>,
+    rows: impl Fn(&Case<'_>) -> Vec<StaticsRow>,
 ) -> Grid {
-    let values = cases.iter().flat_map(|case| columns.iter().map(|column| Heading::of(case.label, column)));
+    let values = cases.iter().flat_map(|case| columns.iter().map(|column| Heading::about(case.label, column)));
     let headings = words.iter().map(|&word| word.into()).chain(values).chain(["unit".into()]).collect();
     let mut grid = Grid::with_headings(key, title, headings);
-    let rows: Vec<Vec<Row>> = cases.iter().map(rows).collect();
-    let mut all: Vec<&Row> = Vec::new();
+    let rows: Vec<Vec<StaticsRow>> = cases.iter().map(rows).collect();
+    let mut all: Vec<&StaticsRow> = Vec::new();
     for of_case in &rows {
-        let more: Vec<&Row> = of_case.iter().filter(|row| !all.iter().any(|other| other.is_about(row))).collect();
+        let more: Vec<&StaticsRow> =
+            of_case.iter().filter(|row| !all.iter().any(|other| other.is_about(row))).collect();
         all.extend(more);
     }
     for row in all {
-        let of_case = |rows: &Vec<Row>| {
+        let of_case = |rows: &Vec<StaticsRow>| {
             let found = rows.iter().find(|other| other.is_about(row));
             found.map_or_else(|| vec![Cell::Empty; columns.len()], |found| found.values.clone())
         };
@@ -200,29 +201,29 @@ fn side_by_side(
     grid
 }
 
-fn pose(case: &Case<'_>) -> Vec<Row> {
+fn pose(case: &Case<'_>) -> Vec<StaticsRow> {
     let coordinates = case.crane.description().coordinates.iter().zip(&case.equilibrium.q);
-    coordinates.map(|(info, value)| Row::of_unit(&[&info.name], *value, info.kind.unit())).collect()
+    coordinates.map(|(info, value)| StaticsRow::of_unit(&[&info.name], *value, info.kind.unit())).collect()
 }
 
-fn drives(case: &Case<'_>) -> Vec<Row> {
+fn drives(case: &Case<'_>) -> Vec<StaticsRow> {
     let description = case.crane.description();
     let efforts = case.crane.drive_efforts_at_rest(&case.equilibrium.q);
     let row = |(drive, effort): (&DriveInfo, f64)| {
         let coordinate = &description.coordinates[drive.coordinate];
-        Row::new(&[&coordinate.name], effort.into(), coordinate.kind.force_unit().into())
+        StaticsRow::new(&[&coordinate.name], effort.into(), coordinate.kind.force_unit().into())
     };
     description.drives.iter().zip(efforts).map(row).collect()
 }
 
 /// Lengths, forces and pressures of the cylinders.
-fn cylinders(case: &Case<'_>) -> Vec<Row> {
+fn cylinders(case: &Case<'_>) -> Vec<StaticsRow> {
     let (q, description) = (&case.equilibrium.q, case.crane.description());
     let states = cylinders_at(case.crane, q, &case.rest(), &case.crane.drive_efforts_at_rest(q));
     let of_one = |(info, state): (&CylinderInfo, CylinderState)| {
         let kind = description.coordinates[description.drives[info.drive].coordinate].kind;
         let oil = format!("{}/{}", kind.force_unit(), kind.unit());
-        let row = |quantity, value, unit: &str| Row::shown(&[&info.name, quantity], value, unit);
+        let row = |quantity, value, unit: &str| StaticsRow::shown(&[&info.name, quantity], value, unit);
         let mut rows = vec![
             row("length", Some(state.length), "m"),
             row("extended", Some(state.extension(info) / info.stroke), "%"),
@@ -238,37 +239,37 @@ fn cylinders(case: &Case<'_>) -> Vec<Row> {
     description.cylinders.iter().zip(states).flat_map(of_one).collect()
 }
 
-fn reactions(case: &Case<'_>) -> Vec<Row> {
+fn reactions(case: &Case<'_>) -> Vec<StaticsRow> {
     let (crane, q) = (case.crane, &case.equilibrium.q);
     let description = crane.description();
     let reactions = crane.support_reactions_at(q, &case.rest());
     let named = description.supports.iter().zip(&reactions);
-    let mut rows: Vec<Row> =
-        named.map(|(support, force)| Row::vector(&support.name, <[f64; 3]>::from(*force), "N")).collect();
+    let mut rows: Vec<StaticsRow> =
+        named.map(|(support, force)| StaticsRow::vector(&support.name, <[f64; 3]>::from(*force), "N")).collect();
     if !rows.is_empty() {
-        rows.push(Row::vector("Σ supports", <[f64; 3]>::from(reactions.iter().sum::<Vector3<f64>>()), "N"));
-        rows.push(Row::vector("weight", crane.weight_at(q), "N"));
+        rows.push(StaticsRow::vector("Σ supports", <[f64; 3]>::from(reactions.iter().sum::<Vector3<f64>>()), "N"));
+        rows.push(StaticsRow::vector("weight", crane.weight_at(q), "N"));
         if !description.loads.is_empty() || description.connectors.iter().any(ConnectorInfo::holds_to_world) {
-            rows.push(Row::vector("applied loads", crane.applied_force_at(0.0, q), "N"));
+            rows.push(StaticsRow::vector("applied loads", crane.applied_force_at(0.0, q), "N"));
         }
     }
     rows
 }
 
 /// The pressure of plates on the ground.
-fn ground(case: &Case<'_>) -> Vec<Row> {
+fn ground(case: &Case<'_>) -> Vec<StaticsRow> {
     let reactions = case.crane.support_reactions_at(&case.equilibrium.q, &case.rest());
     let plates = case.crane.description().supports.iter().zip(reactions);
     let plates = plates.filter(|(support, _)| support.plate_area.is_some());
     let row = |(support, force): (&SupportInfo, Vector3<f64>)| {
         let pressure = support.pressure(force.z).map_or(Cell::Empty, |pressure| Cell::of_unit(pressure, "Pa"));
-        Row::new(&[&support.name], pressure, Cell::unit_of("Pa"))
+        StaticsRow::new(&[&support.name], pressure, Cell::unit_of("Pa"))
     };
     plates.map(row).collect()
 }
 
 /// How much of its friction each foot on the ground uses.
-fn friction(case: &Case<'_>) -> Vec<Row> {
+fn friction(case: &Case<'_>) -> Vec<StaticsRow> {
     let description = case.crane.description();
     if !description.has_feet() {
         return Vec::new();
@@ -277,17 +278,17 @@ fn friction(case: &Case<'_>) -> Vec<Row> {
     let feet = description.supports.iter().enumerate().filter(|(_, support)| support.one_sided);
     let row = |(index, support): (usize, &SupportInfo)| {
         let used = used.iter().find(|(foot, _)| *foot == index).map(|(_, used)| used.min(1.0));
-        Row::shown(&[&support.name], used, "%")
+        StaticsRow::shown(&[&support.name], used, "%")
     };
     feet.map(row).collect()
 }
 
 /// Lengths and forces of connectors.
-fn connectors(case: &Case<'_>) -> Vec<Row> {
+fn connectors(case: &Case<'_>) -> Vec<StaticsRow> {
     let (q, rest) = (&case.equilibrium.q, case.rest());
     let values = case.crane.connector_lengths_at(q, &rest).into_iter().zip(case.crane.tensions_at_rest(0.0, q));
     let of_one = |(connector, ([length, _], tension)): (&ConnectorInfo, ([f64; 2], f64))| {
-        let row = |quantity, value, unit| Row::of_unit(&[&connector.name, quantity], value, unit);
+        let row = |quantity, value, unit| StaticsRow::of_unit(&[&connector.name, quantity], value, unit);
         let kind = connector.kind;
         // At rest, nothing rubs.
         let force = (!connector.is_pin()).then(|| row(kind.force_name(), tension, kind.force_unit()));
@@ -311,18 +312,18 @@ fn title_of_loops(cases: &[Case<'_>]) -> String {
 }
 
 /// Forces and moments of the joints that close loops and of rigid couplings.
-fn loop_joints(case: &Case<'_>) -> Vec<Row> {
+fn loop_joints(case: &Case<'_>) -> Vec<StaticsRow> {
     let joints = case.crane.loop_joints().iter();
     let equations = joints.flat_map(|joint| joint.equations.iter().map(move |equation| (joint, equation)));
     let row = |((joint, equation), force): ((&LoopJointInfo, &LoopEquationInfo), f64)| {
         let quantity = format!("{} {}", equation.what(), equation.direction);
-        Row::new(&[&joint.name, quantity.trim_end()], force.into(), equation.force_unit().into())
+        StaticsRow::new(&[&joint.name, quantity.trim_end()], force.into(), equation.force_unit().into())
     };
     equations.zip(case.crane.loop_forces_at_rest(&case.equilibrium.q)).map(row).collect()
 }
 
-fn points(case: &Case<'_>) -> Vec<Row> {
+fn points(case: &Case<'_>) -> Vec<StaticsRow> {
     let positions = case.crane.points_at(&case.equilibrium.q);
     let named = case.crane.description().points.iter().zip(positions);
-    named.map(|(name, position)| Row::vector(name, <[f64; 3]>::from(position), "m")).collect()
+    named.map(|(name, position)| StaticsRow::vector(name, <[f64; 3]>::from(position), "m")).collect()
 }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use crane_codegen::chain::Input;
 use crane_codegen::program::{Argument, FunctionId};
 use crane_model::dyn_crane::DynCrane;
-use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, FeetSlopes, Numbers, Slopes};
+use crane_model::dynamics::gradients::{Around, CylinderSlopes, FeetSlopes, MotionAt, Numbers, Slopes};
 use crane_model::{Description, EventInfo, ParameterError};
 
 use super::Along;
@@ -168,7 +168,7 @@ impl<'a> Directions<'a> {
         let chunk = |Chunk { count, changes, parameters, inputs, .. }: &Chunk| {
             let mut parameters = parameters.clone();
             event.changes.iter().for_each(|(index, value)| parameters[*index] = Dual8::splat(*value));
-            Chunk::of(&crane, *count, *changes, (parameters, inputs.clone()))
+            Chunk::with_numbers(&crane, *count, *changes, (parameters, inputs.clone()))
         };
         let beside = |Beside { cranes, step }: &Beside| Beside {
             cranes: cranes.each_ref().map(|crane| crane.as_ref().and_then(|crane| with(crane).ok())),
@@ -238,11 +238,16 @@ impl Chunk {
                 Dual8::splat(value)
             }
         });
-        Self::of(crane, count, changes, (parameters, inputs.collect()))
+        Self::with_numbers(crane, count, changes, (parameters, inputs.collect()))
     }
 
     /// Of numbers that have slopes.
-    fn of(crane: &LiveCrane, count: usize, changes: bool, (parameters, inputs): (Vec<Dual8>, Vec<Dual8>)) -> Self {
+    fn with_numbers(
+        crane: &LiveCrane,
+        count: usize,
+        changes: bool,
+        (parameters, inputs): (Vec<Dual8>, Vec<Dual8>),
+    ) -> Self {
         let evaluation = |id: FunctionId| {
             let mut evaluation = Evaluation::new(crane, id);
             evaluation.set_parameters(&parameters);
@@ -369,7 +374,7 @@ impl Slopes for Directions<'_> {
         self.scales[direction]
     }
 
-    fn residuals(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<f64>]) {
+    fn residuals(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [Vec<f64>]) {
         let n = at.q.len();
         for (number, chunk) in self.chunks.iter_mut().enumerate() {
             let first = number * DIRECTIONS;
@@ -388,7 +393,7 @@ impl Slopes for Directions<'_> {
         }
     }
 
-    fn loops(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<[f64; 3]>]) {
+    fn loops(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [Vec<[f64; 3]>]) {
         let n = at.q.len();
         for (number, chunk) in self.chunks.iter_mut().enumerate() {
             let first = number * DIRECTIONS;
@@ -408,7 +413,7 @@ impl Slopes for Directions<'_> {
         }
     }
 
-    fn cylinders(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<CylinderSlopes>]) {
+    fn cylinders(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [Vec<CylinderSlopes>]) {
         let n = at.q.len();
         for (number, Chunk { count, motions, oil, .. }) in self.chunks.iter_mut().enumerate() {
             let Some(oil) = oil else { continue };
@@ -444,7 +449,7 @@ impl Slopes for Directions<'_> {
         }
     }
 
-    fn feet(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [FeetSlopes]) {
+    fn feet(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [FeetSlopes]) {
         let n = at.q.len();
         for (number, Chunk { count, feet, .. }) in self.chunks.iter_mut().enumerate() {
             let Some(feet) = feet else { continue };

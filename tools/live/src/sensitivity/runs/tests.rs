@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::{SourceFile, build};
 use crane_model::dyn_crane::DynCrane;
-use crane_model::dynamics::gradients::{Around, At, CylinderSlopes, FeetSlopes, Numbers, Slopes};
+use crane_model::dynamics::gradients::{Around, CylinderSlopes, FeetSlopes, MotionAt, Numbers, Slopes};
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::loop_joints::Given;
 use crane_model::results::quantities;
@@ -42,19 +42,19 @@ impl Slopes for Unheeded<'_> {
         0.0
     }
 
-    fn residuals(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<f64>]) {
+    fn residuals(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [Vec<f64>]) {
         self.0.residuals(at, along, out);
     }
 
-    fn loops(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<[f64; 3]>]) {
+    fn loops(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [Vec<[f64; 3]>]) {
         self.0.loops(at, along, out);
     }
 
-    fn cylinders(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [Vec<CylinderSlopes>]) {
+    fn cylinders(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [Vec<CylinderSlopes>]) {
         self.0.cylinders(at, along, out);
     }
 
-    fn feet(&mut self, at: &At<'_>, along: &[Vec<f64>], out: &mut [FeetSlopes]) {
+    fn feet(&mut self, at: &MotionAt<'_>, along: &[Vec<f64>], out: &mut [FeetSlopes]) {
         self.0.feet(at, along, out);
     }
 
@@ -82,16 +82,16 @@ fn assert_transposed(what: &str, crane: &LiveCrane, duration: f64, moves: bool) 
     along.extend((0..description.inputs.len()).filter(|index| crane.input(*index).is_some()).map(Along::Input));
     let free = (0..n).filter(|index| description.coordinates[*index].role != CoordinateRole::Prescribed);
     along.extend(free.flat_map(|index| [Along::Position(index), Along::Rate(index)]));
-    let own = Settings::of(description);
+    let own = Settings::from_description(description);
     let settings =
         Settings { duration, output: duration / 7.0, tolerance: 1e-5, audit: false, method: Method::Rosenbrock, ..own };
     let start = if moves {
-        let rest = Start::of(crane).unwrap().state;
+        let rest = Start::new(crane).unwrap().state;
         let mut start = Start::given(InitialState { v: vec![0.01; n], ..rest });
         start.close(crane, 0.0, &Given::default()).unwrap();
         start
     } else {
-        Start::of(crane).unwrap()
+        Start::new(crane).unwrap()
     };
     let proceed = &mut |_: f64| ControlFlow::Continue(());
     let mut slopes = Unheeded(Directions::new(crane, &along));
@@ -216,7 +216,7 @@ supports:
 #[test]
 fn feet_that_land_hold_at_once() {
     let crane = spec(LANDING);
-    let own = Settings::of(crane.description());
+    let own = Settings::from_description(crane.description());
     let settings =
         Settings { duration: 0.01, output: 0.01, tolerance: 1e-12, audit: false, method: Method::Rosenbrock, ..own };
     let proceed = &mut |_: f64| ControlFlow::Continue(());

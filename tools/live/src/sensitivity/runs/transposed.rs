@@ -4,13 +4,13 @@ use crane_codegen::chain::Input;
 use crane_codegen::program::FunctionId;
 use crane_model::EventInfo;
 use crane_model::dyn_crane::DynCrane;
-use crane_model::dynamics::gradients::{Around, At, Covector, CylinderSlopes, FeetSlopes, Numbers, PullBacks};
+use crane_model::dynamics::gradients::{Around, Covector, CylinderSlopes, FeetSlopes, MotionAt, Numbers, PullBacks};
 
 use super::Along;
 use super::directions::{Directions, FEET};
 use crate::LiveCrane;
 use crate::assemble::TooLarge;
-use crate::products::{PullBack, Pulled, State};
+use crate::products::{ProductState, PullBack, Pulled};
 
 /// The transposed functions of a crane.
 pub(super) struct Transposed<'a> {
@@ -37,10 +37,10 @@ impl<'a> Transposed<'a> {
             parameters: (0..crane.parameters().len()).map(|index| place(Along::Parameter(index))).collect(),
             inputs: (0..crane.description().inputs.len()).map(|index| place(Along::Input(index))).collect(),
         };
-        Self::of(Directions::new(crane, along), places)
+        Self::with_directions(Directions::new(crane, along), places)
     }
 
-    fn of(directions: Directions<'a>, places: Places) -> Result<Self, TooLarge> {
+    fn with_directions(directions: Directions<'a>, places: Places) -> Result<Self, TooLarge> {
         let crane = directions.crane();
         let with = |needed: bool, id: FunctionId| if needed { PullBack::new(crane, id) } else { Ok(None) };
         let description = crane.description();
@@ -113,13 +113,13 @@ impl PullBacks for Transposed<'_> {
     fn after(&self, event: &EventInfo) -> Option<Box<dyn PullBacks>> {
         let mut places = self.places.clone();
         event.changes.iter().for_each(|(index, _)| places.parameters[*index] = None);
-        let after = Transposed::of(self.directions.after(event).ok()?, places).ok()?;
+        let after = Transposed::with_directions(self.directions.after(event).ok()?, places).ok()?;
         Some(Box::new(after))
     }
 
-    fn residuals(&mut self, at: &At<'_>, weights: &[f64], sum: &mut Covector) {
+    fn residuals(&mut self, at: &MotionAt<'_>, weights: &[f64], sum: &mut Covector) {
         let Self { places, residual, loop_jacobians, .. } = self;
-        let state = State { t: at.t, q: at.q, v: at.v, a: at.a };
+        let state = ProductState { t: at.t, q: at.q, v: at.v, a: at.a };
         if let Some(residual) = residual {
             places.add(&residual.at(&state, weights), sum);
         }
@@ -133,9 +133,9 @@ impl PullBacks for Transposed<'_> {
         }
     }
 
-    fn loops(&mut self, at: &At<'_>, weights: &[[f64; 3]], sum: &mut Covector) {
+    fn loops(&mut self, at: &MotionAt<'_>, weights: &[[f64; 3]], sum: &mut Covector) {
         let Self { places, loop_states, loop_jacobians, .. } = self;
-        let state = State { t: at.t, q: at.q, v: at.v, a: at.a };
+        let state = ProductState { t: at.t, q: at.q, v: at.v, a: at.a };
         if let (Some(states), Some(jacobians)) = (loop_states, loop_jacobians) {
             places.add(&states.at(&state, weights.as_flattened()), sum);
             let weights: Vec<f64> =
@@ -144,11 +144,11 @@ impl PullBacks for Transposed<'_> {
         }
     }
 
-    fn cylinders(&mut self, at: &At<'_>, weights: &[CylinderSlopes], sum: &mut Covector) {
+    fn cylinders(&mut self, at: &MotionAt<'_>, weights: &[CylinderSlopes], sum: &mut Covector) {
         let Self { directions, places, .. } = self;
         let crane = directions.crane();
         let (Some(states), Some(jacobians)) = (&mut self.cylinder_states, &mut self.cylinder_jacobians) else { return };
-        let state = State { t: at.t, q: at.q, v: at.v, a: at.a };
+        let state = ProductState { t: at.t, q: at.q, v: at.v, a: at.a };
         let of_states: Vec<f64> =
             weights.iter().flat_map(|own| [own.length_and_rate[0], own.length_and_rate[1], 0.0]).collect();
         places.add(&states.at(&state, &of_states), sum);
@@ -171,7 +171,7 @@ impl PullBacks for Transposed<'_> {
             of_openings[cylinder.drive][0] += own.opening;
         }
         let of_wanted: Vec<f64> = weights.iter().flat_map(|own| [own.wanted[0], own.wanted[1], 0.0]).collect();
-        let pulled = states.at(&State { q: &wanted[0], v: &wanted[1], ..state }, &of_wanted);
+        let pulled = states.at(&ProductState { q: &wanted[0], v: &wanted[1], ..state }, &of_wanted);
         places.add_numbers(&pulled, sum);
         for cylinder in driven() {
             let coordinate = description.drives[cylinder.drive].coordinate;
@@ -185,9 +185,9 @@ impl PullBacks for Transposed<'_> {
         }
     }
 
-    fn feet(&mut self, at: &At<'_>, weights: &FeetSlopes, sum: &mut Covector) {
+    fn feet(&mut self, at: &MotionAt<'_>, weights: &FeetSlopes, sum: &mut Covector) {
         let Self { places, feet: Some(feet), .. } = self else { return };
-        let state = State { t: at.t, q: at.q, v: at.v, a: at.a };
+        let state = ProductState { t: at.t, q: at.q, v: at.v, a: at.a };
         let FeetSlopes { elongations, jacobians, stiffnesses, dampings, grips } = weights;
         for (function, weights) in feet.iter_mut().zip([elongations, jacobians, stiffnesses, dampings, grips]) {
             if let Some(function) = function {
@@ -199,7 +199,7 @@ impl PullBacks for Transposed<'_> {
     fn drive_motions(&mut self, t: f64, weights: &[[f64; 2]], sum: &mut Covector) {
         let Self { directions, places, motions, .. } = self;
         if let Some(motions) = motions.as_mut().filter(|_| directions.may_move_drives()) {
-            let state = State { t, q: &[], v: &[], a: &[] };
+            let state = ProductState { t, q: &[], v: &[], a: &[] };
             places.add_numbers(&motions.at(&state, weights.as_flattened()), sum);
         }
     }
