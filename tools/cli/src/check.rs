@@ -9,7 +9,6 @@ use serde_json::{Value, json};
 use crate::{
     arguments::{Check, Format},
     problem::{FAILED, Outcome, Problem},
-    screen,
     selection::Registry,
 };
 
@@ -32,7 +31,7 @@ fn as_text(Check { specs, strict, .. }: &Check, registry: &Registry, out: &mut d
             // The last problem is reported at the end, those before it now.
             Err(problem) => {
                 if let Err(before) = mem::replace(&mut worst, Err(problem)) {
-                    screen::report(&before);
+                    registry.console.report(&before);
                 }
             }
         }

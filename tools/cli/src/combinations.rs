@@ -54,7 +54,7 @@ pub fn statics(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> 
     let cases = combinations.cases();
     let mut report = equilibria(&cases, options.crane.limits.bend);
     report.show_all(options.all);
-    options.format.print(&report, out)?;
+    options.format.print(&report, &registry.console, out)?;
     all_stable(&cases)
 }
 
@@ -75,7 +75,7 @@ pub fn strength(options: &Analysis, registry: &Registry, out: &mut dyn Write) ->
     report.grid(overview(&cases, &resting));
     report.grid(worst(&resting));
     report.show_all(options.all);
-    options.format.print(&report, out)?;
+    options.format.print(&report, &registry.console, out)?;
     all_stable(&cases)
 }
 

@@ -11,7 +11,7 @@ use crate::{
     book, check, combinations, compare, compiled, completions, drives, ensemble, envelope, eval, example, exchange,
     explain, factors, fatigue, generate, help, info, linearise, margins, modes, new, page, picture, poses,
     problem::Outcome,
-    run, screen,
+    run,
     selection::Registry,
     sensitivity, simulate, stability, statics, strength,
     variants::Edit,
@@ -62,7 +62,7 @@ pub fn dispatch(arguments: &Arguments, registry: &Registry, out: &mut dyn Write)
     }
     match &arguments.action {
         None if registry.has(compare::CRANES) => {
-            screen::remark(&format!(
+            registry.console.remark(&format!(
                 "crane without a command compares {} with {} and writes to {}; `crane --help` lists the commands",
                 compare::CRANES[0],
                 compare::CRANES[1],
@@ -104,10 +104,10 @@ pub fn dispatch(arguments: &Arguments, registry: &Registry, out: &mut dyn Write)
         Some(Action::Explain(options)) => explain::explain(options, registry, out),
         Some(Action::Example(options)) => example::example(options, registry, out),
         Some(Action::Generate(options)) => generate::generate(options, registry, out),
-        Some(Action::Operations { specs }) => generate::operations(specs, out),
+        Some(Action::Operations { specs }) => generate::operations(specs, registry, out),
         Some(Action::Schema { of }) => generate::schema(*of, out),
         Some(Action::Export(options)) => exchange::export(options, registry, out),
-        Some(Action::Import(options)) => exchange::import(options, out),
+        Some(Action::Import(options)) => exchange::import(options, registry, out),
         Some(Action::List(options)) => info::list(options.format, registry, out),
         Some(Action::Completions { shell }) => {
             // Into memory first: a partial script is of no use.

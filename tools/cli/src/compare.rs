@@ -14,7 +14,6 @@ use crate::{
     integration::{prepare, runs},
     page,
     problem::{Outcome, Problem},
-    screen,
     selection::{Registry, set_inputs},
     simulate::{Trace, file_list, points, spoken, write_figure, write_figures, write_run},
     spec_file,
@@ -44,12 +43,13 @@ pub fn load(options: &mut ComparePair, registry: &mut Registry) -> Outcome<()> {
         return Ok(());
     };
     if let Some(file) = spec_file(name) {
-        let spec = read(&spec_file::open(file, spec_file::SPEC)?).map_err(Problem::mistakes)?;
+        let spec = read(&spec_file::open(&registry.console, file, spec_file::SPEC)?).map_err(Problem::mistakes)?;
         // Two versions of a crane may share one name.
         let other = format!("{first}_other");
         let edit = (spec.crane.name.value.as_ref() == Some(first)).then_some(Edit::Name(&other));
         let checked = edited(&spec, edit.as_slice())?;
-        *name = registry.add_checked(spec_file::warned(checked, *strict)?, &file.display().to_string());
+        *name =
+            registry.add_checked(spec_file::warned(&registry.console, checked, *strict)?, &file.display().to_string());
     }
     if options.rigid {
         for name in [&mut options.first].into_iter().chain(&mut options.second) {
@@ -106,7 +106,7 @@ fn side_by_side(
     let folder = &options.folder.out;
     let cases = [Case::new(first, one.as_ref()), Case::new(second, other.as_ref())];
     // Arguments that cannot be used are refused before anything is written.
-    let prepared = prepare(&cases, &options.timing, default)?;
+    let prepared = prepare(&registry.console, &cases, &options.timing, default)?;
     let format = options.format;
     let mut report = equilibria(&cases, options.limits.bend);
     report.grid(deflection(&cases[0], &cases[1]));
@@ -117,30 +117,30 @@ fn side_by_side(
         writeln!(out, "Comparing {} and {}.", from.name, to.name)?;
         writeln!(out, "Figures (SVG), results (CSV) and report.html go to the folder {}.\n", folder.display())?;
         writeln!(out, "Statics of {}\n", to.title)?;
-        format.print(&mem::take(&mut report), out)?;
+        format.print(&mem::take(&mut report), &registry.console, out)?;
         report.show_all(options.all);
     }
 
     files::folder(folder)?;
-    let (settings, runs) = runs(&cases, &options.timing, options.limits, prepared)?;
+    let (settings, runs) = runs(&registry.console, &cases, &options.timing, options.limits, prepared)?;
     let [one_run, other_run] = runs.as_slice() else {
         return Err(Problem::failed("a simulation is missing", "please report this as a bug"));
     };
 
     let mut written = Vec::new();
     for ((case, settings), run) in cases.iter().zip(&settings).zip(&runs) {
-        written.extend(write_run(folder, case.crane, settings, run)?);
+        written.extend(write_run(&registry.console, folder, case.crane, settings, run)?);
     }
     let description = other.description();
     let traces = [
         Trace { label: second, table: &other_run.table, dashed: false },
         Trace { label: first, table: &one_run.table, dashed: true },
     ];
-    written.extend(write_figures(folder, "comparison_", description, &traces)?);
+    written.extend(write_figures(&registry.console, folder, "comparison_", description, &traces)?);
     let panels = deviation(description, (first, &one_run.table), (second, &other_run.table));
     if panels.iter().any(|panel| !panel.curves.is_empty()) {
         let deviation_file = "comparison_deviation.svg".to_owned();
-        write_figure(&folder.join(&deviation_file), &panels, 1)?;
+        write_figure(&registry.console, &folder.join(&deviation_file), &panels, 1)?;
         written.push(deviation_file);
     }
 
@@ -164,8 +164,8 @@ fn side_by_side(
             method.title()
         )?;
     }
-    format.print(&report, out)?;
-    if let (Format::Table, Some(seconds)) = (format, screen::seconds_since(begin)) {
+    format.print(&report, &registry.console, out)?;
+    if let (Format::Table, Some(seconds)) = (format, registry.console.seconds_since(begin)) {
         writeln!(out, "\nTotal time: {seconds:.1} s")?;
     }
     Ok(())

@@ -14,6 +14,7 @@ use crate::{
     arguments::Choice,
     files,
     problem::Outcome,
+    screen::Console,
     selection::Registry,
     spec_file::{load, parse},
 };
@@ -49,47 +50,54 @@ pub fn root() -> &'static Path {
 /// Does what the arguments of this process ask for, with the chosen crane as machine code.
 pub fn execute(choice: &Choice, registry: &Registry) -> Outcome<()> {
     let (Chain { name, spec_hash, .. }, text) = match (choice.file(), registry.spec(&choice.name)) {
-        (None, Some(spec)) => parse(SourceFile::new(format!("{}.yaml", choice.name), spec.to_owned()), choice.strict)?,
+        (None, Some(spec)) => {
+            parse(&registry.console, SourceFile::new(format!("{}.yaml", choice.name), spec.to_owned()), choice.strict)?
+        }
         (None, None) => return registry.crane(&choice.name).map(|_| ()),
-        (Some(file), _) => load(file, choice.strict)?,
+        (Some(file), _) => load(&registry.console, file, choice.strict)?,
     };
     let package = format!("crane-{name}-{spec_hash}");
-    run_with(&COMMAND, &package, OsStr::new(&choice.name), &[(name, text)])
+    run_with(&registry.console, &COMMAND, &package, OsStr::new(&choice.name), &[(name, text)])
 }
 
 /// Runs a library in the program of several cranes, given by names and specs; the first one replaces `named`.
 ///
 /// # Errors
 /// Cargo is missing or fails, or files cannot be written; the program reports its own errors.
-pub fn run_with(library: &Library, package: &str, named: &OsStr, cranes: &[(String, String)]) -> Outcome<()> {
+pub fn run_with(
+    console: &Console,
+    library: &Library,
+    package: &str,
+    named: &OsStr,
+    cranes: &[(String, String)],
+) -> Outcome<()> {
     let mut compiled_name = cranes.first().map(|(name, _)| OsString::from(name));
-    let arguments: Vec<OsString> = env::args_os()
+    let arguments: Vec<OsString> = console
+        .words
+        .iter()
         .skip(1)
-        .filter(|argument| argument != "--compile")
-        .map(|argument| match compiled_name.take_if(|_| argument == *named) {
-            Some(name) => name,
-            None => argument,
-        })
+        .filter(|argument| *argument != "--compile")
+        .map(|argument| compiled_name.take_if(|_| argument == named).unwrap_or_else(|| argument.clone()))
         .collect();
-    let package = Package { product: Product::Program, library, name: package, cranes };
+    let package = Package { console, product: Product::Program, library, name: package, cranes };
     package::run_package(&package, |command| {
-        command.args(&arguments).env(AS_TYPED, typed()).env(files::READ_BEFORE, files::read_before());
+        command.args(&arguments).env(AS_TYPED, typed(console)).env(files::READ_BEFORE, console.read_before());
     })
 }
 
 /// The shared library of functional mock-up units of a crane as machine code: the kept one, or one that is compiled now.
-pub fn unit(chain: &Chain, spec: &str) -> Outcome<PathBuf> {
+pub fn unit(console: &Console, chain: &Chain, spec: &str) -> Outcome<PathBuf> {
     let Chain { name, spec_hash, .. } = chain;
     let cranes = [(name.clone(), spec.to_owned())];
     let package = format!("crane-fmu-{name}-{spec_hash}");
-    let package = Package { product: Product::Unit, library: &UNITS, name: &package, cranes: &cranes };
+    let package = Package { console, product: Product::Unit, library: &UNITS, name: &package, cranes: &cranes };
     package.kept()?.map_or_else(|| package.compiled(), Ok)
 }
 
 /// The command as it was typed, as a shell reads it again.
-pub fn typed() -> String {
+pub fn typed(console: &Console) -> String {
     env::var(AS_TYPED).unwrap_or_else(|_| {
-        let arguments: Vec<String> = env::args().skip(1).map(|word| quoted(&word)).collect();
+        let arguments: Vec<String> = console.words.iter().skip(1).map(|word| quoted(&word.to_string_lossy())).collect();
         format!("crane {}", arguments.join(" "))
     })
 }

@@ -25,11 +25,9 @@ use serde_json::Value;
 use crate::{
     arguments::{Ensemble, Simulate, Step, Timing},
     files,
-    integration::batches,
     journal::{self, Journal, Request},
     parameter_table::ParameterTable,
     problem::{Outcome, Problem},
-    screen,
     selection::Registry,
     simulate::method,
 };
@@ -55,7 +53,7 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
         ));
     }
     let crane = options.run.analysis.crane.open(registry)?;
-    let table = ParameterTable::read(given, crane.description())?;
+    let table = ParameterTable::read(&registry.console, given, crane.description())?;
     let (settings, step) = settings(&options.run.timing, crane.as_ref(), &table)?;
     let crane = as_fleets(crane, &settings, registry);
     let crane = crane.as_ref();
@@ -64,7 +62,7 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
     let threads = threads.map_or_else(thread::available_parallelism, Ok).map_or(1, NonZeroUsize::get);
     let path =
         results.clone().unwrap_or_else(|| options.run.folder.out.join(format!("{}_ensemble.csv", description.name)));
-    files::check_place(&path)?;
+    registry.console.check_place(&path)?;
     files::folder(path.parent().unwrap_or(&path))?;
 
     let begin = Instant::now();
@@ -79,7 +77,7 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
         }
     }
     let fresh: Vec<usize> = (0..kept.len()).filter(|row| kept[*row].is_none()).collect();
-    let bar = batches(kept.len());
+    let bar = registry.console.batches(kept.len());
     bar.inc((kept.len() - fresh.len()) as u64);
     let state = Mutex::new((kept, Ok(())));
     let parameters = table.parameters(crane);
@@ -98,12 +96,12 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
     let execution = Execution { threads, done: &done, cancelled: &failed };
     let simulated: f64 = ensemble::run_ensemble(crane, &cases, &settings, &execution).iter().map(Row::time).sum();
     bar.finish_and_clear();
-    let wall = screen::seconds_since(begin);
+    let wall = registry.console.seconds_since(begin);
     let (rows, written) = state.into_inner().unwrap_or_else(PoisonError::into_inner);
     written?;
     let rows: Vec<Vec<String>> = rows.into_iter().flatten().collect();
     let reached = rows.iter().filter(|row| row.last().is_some_and(|status| status == DONE)).count();
-    files::write_fields(&path, header.into_iter(), rows.iter().cloned())?;
+    registry.console.write_fields(&path, header.into_iter(), rows.iter().cloned())?;
     journal.remove()?;
 
     let mut report = Report::default();
@@ -126,7 +124,7 @@ pub fn simulate(options: &Simulate, given: &Path, registry: &Registry, out: &mut
         report.fact("real-time factor", simulated / wall, "");
     }
     report.fact("written to", path.display().to_string(), "");
-    options.run.analysis.format.print(&report, out)?;
+    options.run.analysis.format.print(&report, &registry.console, out)?;
     if reached == rows.len() {
         return Ok(());
     }

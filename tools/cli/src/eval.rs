@@ -14,9 +14,9 @@ use serde_json::{Map, Value};
 
 use crate::{
     arguments::{Eval, EvalFormat, Quantity},
-    files,
     npz::{Array, npz},
     problem::{Outcome, Problem},
+    screen::Console,
     selection::Registry,
 };
 
@@ -26,7 +26,7 @@ pub fn eval(options: &Eval, registry: &Registry, out: &mut dyn Write) -> Outcome
     for quantity in &options.quantities {
         check(*quantity, &crane)?;
     }
-    let states = states(options, &crane)?;
+    let states = states(&registry.console, options, &crane)?;
     let arrays = arrays(options, &crane, &states);
     let description = crane.description();
     let bytes = match options.format {
@@ -36,7 +36,7 @@ pub fn eval(options: &Eval, registry: &Registry, out: &mut dyn Write) -> Outcome
         }
     };
     match &options.file {
-        Some(path) => files::write_file(path, |file| file.write_all(&bytes)),
+        Some(path) => registry.console.write_file(path, |file| file.write_all(&bytes)),
         None => Ok(out.write_all(&bytes)?),
     }
 }
@@ -47,12 +47,13 @@ struct States {
     v: Vec<Vec<f64>>,
 }
 
-fn states(options: &Eval, crane: &LiveCrane) -> Outcome<States> {
+fn states(console: &Console, options: &Eval, crane: &LiveCrane) -> Outcome<States> {
     let description = crane.description();
     let size = description.coordinates.len();
     let guess = || (crane as &dyn DynCrane).guess();
-    let q = read_rows_given("q", options.q.as_deref(), description)?.unwrap_or_else(|| vec![guess()]);
-    let mut v = read_rows_given("v", options.v.as_deref(), description)?.unwrap_or_else(|| vec![vec![0.0; size]]);
+    let q = read_rows_given(console, "q", options.q.as_deref(), description)?.unwrap_or_else(|| vec![guess()]);
+    let mut v =
+        read_rows_given(console, "v", options.v.as_deref(), description)?.unwrap_or_else(|| vec![vec![0.0; size]]);
     if v.len() == 1 {
         v.resize(q.len(), v[0].clone());
     }
@@ -66,9 +67,14 @@ fn states(options: &Eval, crane: &LiveCrane) -> Outcome<States> {
 }
 
 /// Numbers given inline or in a file, one per coordinate of each state.
-fn read_rows_given(name: &str, given: Option<&str>, description: &Description) -> Outcome<Option<Vec<Vec<f64>>>> {
+fn read_rows_given(
+    console: &Console,
+    name: &str,
+    given: Option<&str>,
+    description: &Description,
+) -> Outcome<Option<Vec<Vec<f64>>>> {
     let Some(given) = given else { return Ok(None) };
-    let numbers = parse(given).map_or_else(|| parse_file(name, given), Ok)?;
+    let numbers = parse(given).map_or_else(|| parse_file(console, name, given), Ok)?;
     let wanted = description.coordinates.len();
     if numbers.is_empty() || wanted == 0 || numbers.len() % wanted != 0 {
         let names: Vec<String> =
@@ -81,8 +87,8 @@ fn read_rows_given(name: &str, given: Option<&str>, description: &Description) -
     Ok(Some(numbers.chunks(wanted).map(<[f64]>::to_vec).collect()))
 }
 
-fn parse_file(name: &str, path: &str) -> Outcome<Vec<f64>> {
-    let text = files::read_file(Path::new(path)).and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
+fn parse_file(console: &Console, name: &str, path: &str) -> Outcome<Vec<f64>> {
+    let text = console.read_file(Path::new(path)).and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
     let text = text.map_err(|error| {
         Problem::usage(
             format!("`--{name} {path}` is neither a list of numbers nor a file: {error}"),

@@ -28,9 +28,8 @@ use crane_page::shapes::{
 
 use crate::{
     arguments::{CNumber, Export, Import, Language},
-    files, fmu, picture,
+    fmu, picture,
     problem::{Outcome, Problem},
-    screen,
     selection::Registry,
     spec_file,
     variants::{Edit, edited},
@@ -66,7 +65,7 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
     let source = registry.source(&options.crane.name)?;
     let edit = options.crane.combination.as_deref().map(Edit::Combination);
     let checked = edited(&read(&source).map_err(Problem::mistakes)?, edit.as_slice())?;
-    let Checked { chain, spec, .. } = spec_file::warned(checked, options.crane.strict)?;
+    let Checked { chain, spec, .. } = spec_file::warned(&registry.console, checked, options.crane.strict)?;
     let spec = spec.saved().text.clone();
     keep_loops(options, &chain)?;
     let mut parameters = chain.parameter_defaults();
@@ -109,22 +108,22 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
                 ));
             }
             let header = beside(&file)?;
-            let code = screen::working(&chain, || in_c(options, &chain, &parameters, &header))?;
+            let code = registry.console.working(&chain, || in_c(options, &chain, &parameters, &header))?;
             vec![(file.with_file_name(header), code.header), (file.clone(), code.source)]
         }
         // Written above: it needs a pose.
         Language::Gltf => Vec::new(),
-        Language::Fmu => return fmu::write_unit(options, &file, chain, &spec, &parameters, registry.carried(), out),
+        Language::Fmu => return fmu::write_unit(options, &file, chain, &spec, &parameters, registry, out),
     };
     for (file, _) in &texts {
-        files::check_place(file)?;
+        registry.console.check_place(file)?;
     }
     for (file, text) in &texts {
-        files::write_text(file, text)?;
+        registry.console.write_text(file, text)?;
         writeln!(out, "{} written", file.display())?;
     }
     for (name, surface) in &meshes {
-        files::write_file(&file.with_file_name(name), |file| file.write_all(surface))?;
+        registry.console.write_file(&file.with_file_name(name), |file| file.write_all(surface))?;
     }
     if !meshes.is_empty() {
         writeln!(out, "{} written, with {} meshes", folder_of_meshes(&file).display(), meshes.len())?;
@@ -189,8 +188,8 @@ fn in_c(options: &Export, chain: &Chain, parameters: &[f64], header: &str) -> Ou
 }
 
 /// Writes a spec made from URDF or MJCF, and checks it.
-pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
-    let source = spec_file::open(&options.robot, "give a URDF or MJCF file")?;
+pub fn import(options: &Import, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
+    let source = spec_file::open(&registry.console, &options.robot, "give a URDF or MJCF file")?;
     // Files that it includes lie beside it.
     let folder = options.robot.parent().unwrap_or(Path::new("."));
     let mut beside = |file: &str| {
@@ -217,13 +216,13 @@ pub fn import(options: &Import, out: &mut dyn Write) -> Outcome<()> {
         out.write_all(spec.as_bytes())?;
         // To standard error, not into the spec.
         for remark in &left_out {
-            screen::remark(remark);
+            registry.console.remark(remark);
         }
         return Ok(());
     };
-    files::write_text(file, &spec)?;
+    registry.console.write_text(file, &spec)?;
     writeln!(out, "{} written", file.display())?;
-    let (Chain { name, bodies, coordinates, .. }, _) = spec_file::load(file, false)?;
+    let (Chain { name, bodies, coordinates, .. }, _) = spec_file::load(&registry.console, file, false)?;
     let (file, bodies, coordinates) = (file.display(), bodies.len(), coordinates.len());
     writeln!(out, "{name}: valid; {bodies} bodies, {coordinates} coordinates; next: `crane run {file}`")?;
     for remark in &left_out {

@@ -13,10 +13,10 @@ use crane_page::tables::{Case, Cell, Grid, Report, VALUE, add_events, caution_of
 
 use crate::{
     arguments::{self, Choice, spec_file},
-    files,
-    integration::{progress, record_checked},
+    integration::record_checked,
     problem::{Outcome, Problem},
     quantity,
+    screen::Console,
     selection::Registry,
     strength::{self, words},
     variants::Edit,
@@ -35,12 +35,12 @@ pub fn fatigue(options: &arguments::Fatigue, registry: &Registry, out: &mut dyn 
     let mut report = Report::default();
     verdicts(&mut report, &cases);
     if let Some(unstable) = cases.into_iter().find(|case| !case.equilibrium.is_stable()) {
-        options.analysis.format.print(&report, out)?;
+        options.analysis.format.print(&report, &registry.console, out)?;
         return Ok(unstable.stable()?);
     }
-    add(&mut report, options, &asked)?;
+    add(&registry.console, &mut report, options, &asked)?;
     report.show_all(options.analysis.all);
-    options.analysis.format.print(&report, out)
+    options.analysis.format.print(&report, &registry.console, out)
 }
 
 /// The same as a report without the verdicts of statics.
@@ -50,7 +50,7 @@ pub fn report(options: &arguments::Fatigue, registry: &Registry) -> Outcome<Repo
         case.stable()?;
     }
     let mut report = Report::default();
-    add(&mut report, options, &asked)?;
+    add(&registry.console, &mut report, options, &asked)?;
     Ok(report)
 }
 
@@ -126,7 +126,7 @@ impl Repeated {
             return Ok(Self { word: word.to_owned(), crane: choice.open(registry)?, repetitions });
         };
         // Of its own: several specs may have one name.
-        let mut own = Registry::default();
+        let mut own = registry.empty();
         let edit = choice.combination.as_deref().map(Edit::Combination);
         choice.name = own.add_file(&file, edit.as_slice(), choice.strict)?;
         Ok(Self { word: word.to_owned(), crane: choice.open(&own)?, repetitions })
@@ -134,16 +134,16 @@ impl Repeated {
 }
 
 /// Runs all manoeuvres, and adds what they do.
-fn add(report: &mut Report, options: &arguments::Fatigue, asked: &Manoeuvres) -> Outcome<()> {
+fn add(console: &Console, report: &mut Report, options: &arguments::Fatigue, asked: &Manoeuvres) -> Outcome<()> {
     let description = asked.0[0].crane.description();
     let categories = Categories::read(options, description)?;
     let mut runs = Vec::new();
     for Repeated { crane, .. } in &asked.0 {
-        let start = options.timing.start(crane.as_ref(), false)?;
+        let start = options.timing.start(console, crane.as_ref(), false)?;
         let settings = options.timing.settings(crane.as_ref(), &start, Method::RECOMMENDED)?;
-        let bar = progress(settings.duration);
+        let bar = console.progress(settings.duration);
         let checks = (!options.timing.no_verify, options.analysis.crane.limits);
-        runs.push(record_checked(crane.as_ref(), &start, &settings, checks, &bar)?);
+        runs.push(record_checked(crane.as_ref(), &start, &settings, checks, (console, &bar))?);
         bar.finish_and_clear();
     }
     caution_of_runs(report, asked.0.iter().map(|repeated| asked.label(repeated)).zip(&runs));
@@ -180,7 +180,7 @@ fn add(report: &mut Report, options: &arguments::Fatigue, asked: &Manoeuvres) ->
     report.grid(subject.places(&found));
     report.grid(subject.cycles(worst));
     if let Some(file) = &options.results {
-        files::write_csv(file, &subject.stresses(&found))?;
+        console.write_csv(file, &subject.stresses(&found))?;
     }
     Ok(())
 }

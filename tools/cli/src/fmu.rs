@@ -15,9 +15,10 @@ use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptio
 
 use crate::{
     arguments::{Export, Fmi},
-    compiled, files,
+    compiled,
     problem::{Outcome, Problem},
-    selection::Carried,
+    screen::Console,
+    selection::Registry,
 };
 
 /// A shared library and the system that it is for.
@@ -58,26 +59,26 @@ pub fn write_unit(
     chain: Chain,
     spec: &str,
     parameters: &[f64],
-    carried: &Carried,
+    registry: &Registry,
     out: &mut dyn Write,
 ) -> Outcome<()> {
     let (is_compiled, version) = (options.crane.compile, options.fmi.unwrap_or_default());
     let libraries = match options.libraries.as_slice() {
-        [] if is_compiled => vec![read_library(&compiled::unit(&chain, spec)?)?],
-        [] => vec![own_library(carried)?],
+        [] if is_compiled => vec![read_library(&registry.console, &compiled::unit(&registry.console, &chain, spec)?)?],
+        [] => vec![own_library(registry)?],
         [..] if is_compiled => {
             return Err(Problem::usage(
                 "`--library` names a library that is ready made, `--compile` makes one for this computer",
                 "leave one of them out",
             ));
         }
-        named => named.iter().map(|path| read_library(path)).collect::<Outcome<_>>()?,
+        named => named.iter().map(|path| read_library(&registry.console, path)).collect::<Outcome<_>>()?,
     };
     let mut crane = LiveCrane::new(chain);
     crane.set_parameters(parameters).map_err(|refused| Problem::usage(refused.to_string(), ""))?;
     let content = pack(&crane, spec, &libraries, version)
         .map_err(|error| Problem::failed(format!("{}: {error}", file.display()), "make its libraries smaller"))?;
-    files::write_file(file, |file| file.write_all(&content))?;
+    registry.console.write_file(file, |file| file.write_all(&content))?;
     let systems: Vec<String> = libraries.iter().map(|library| library.system.folder(version)).collect();
     let (file, size) = (file.display(), content.len() as f64 / 1e6);
     Ok(writeln!(
@@ -121,21 +122,21 @@ fn pack(crane: &LiveCrane, spec: &str, libraries: &[Library], version: Fmi) -> R
     Ok(archive.finish()?.into_inner())
 }
 
-fn read_library(path: &Path) -> Outcome<Library> {
+fn read_library(console: &Console, path: &Path) -> Outcome<Library> {
     let ending = path.extension().unwrap_or_default();
     let system = SYSTEMS.iter().find(|system| ending == system.suffix).ok_or_else(|| {
         Problem::usage(format!("{} is not a shared library", path.display()), "give a .so, .dll or .dylib file")
     })?;
-    let content = files::read_file(path).map_err(|error| Problem::file(path, &error))?;
+    let content = console.read_file(path).map_err(|error| Problem::file(path, &error))?;
     Ok(Library { system, content: content.into() })
 }
 
 /// The library for this computer: the one that the command carries, or the file beside it.
-fn own_library(carried: &Carried) -> Outcome<Library> {
+fn own_library(registry: &Registry) -> Outcome<Library> {
     let of_this_computer = SYSTEMS.iter().find(|system| system.suffix == consts::DLL_EXTENSION);
-    match (carried.unit_library, of_this_computer) {
+    match (registry.carried().unit_library, of_this_computer) {
         (Some(content), Some(system)) => Ok(Library { system, content: content.into() }),
-        _ => read_library(&beside_the_command()?),
+        _ => read_library(&registry.console, &beside_the_command()?),
     }
 }
 

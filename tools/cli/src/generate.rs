@@ -12,7 +12,6 @@ use crate::{
     arguments::{Generate, Output},
     files,
     problem::{Outcome, Problem},
-    screen,
     selection::Registry,
     spec_file::load,
 };
@@ -24,28 +23,28 @@ pub fn generate(options: &Generate, registry: &Registry, out: &mut dyn Write) ->
     if let Some(folder) = &options.dump {
         files::folder(folder)?;
         for (name, text) in dump::stages(&source, analyses).map_err(Problem::mistakes)? {
-            files::write_text(&folder.join(name), &text)?;
+            registry.console.write_text(&folder.join(name), &text)?;
         }
     }
     let chain = compile::load(&source).map_err(Problem::mistakes)?;
-    let compiled = screen::working(&chain, || compile::compile(&source, analyses));
+    let compiled = registry.console.working(&chain, || compile::compile(&source, analyses));
     let Compiled { code, warnings } = compiled.map_err(Problem::mistakes)?;
     if !warnings.is_empty() {
-        screen::warn(&warnings);
+        registry.console.warn(&warnings);
     }
     if let Some(warning) = code.report.warning(&code.name) {
-        screen::remark(&format!("warning: {warning}"));
+        registry.console.remark(&format!("warning: {warning}"));
     }
     let Some(file) = &options.file else { return Ok(out.write_all(code.text.as_bytes())?) };
-    files::write_text(file, &code.text)?;
+    registry.console.write_text(file, &code.text)?;
     let (functions, lines) = (code.report.costs.len(), code.text.lines().count());
     Ok(writeln!(out, "{}: {functions} functions, {lines} lines", file.display())?)
 }
 
 /// Prints a Markdown table of operations: one row per function, one column per spec.
-pub fn operations(specs: &[PathBuf], out: &mut dyn Write) -> Outcome<()> {
+pub fn operations(specs: &[PathBuf], registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let report = |spec: &PathBuf| {
-        let (chain, _) = load(spec, false)?;
+        let (chain, _) = load(&registry.console, spec, false)?;
         let report = compile::report(&chain, Analyses::ALL);
         Ok((chain.name, report))
     };

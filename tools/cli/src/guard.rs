@@ -1,10 +1,10 @@
 //! Ends the command with a message before it has used so much memory that the system ends it, or something else.
 
-use std::{env, fs, path::Path, process, thread, time::Duration};
+use std::{env, fs, path::Path, process, sync::Arc, thread, time::Duration};
 
 use crate::{
     problem::{Outcome, Problem},
-    screen,
+    screen::Console,
 };
 
 /// The environment variable with another limit, MB; 0: none.
@@ -16,11 +16,12 @@ const SHARE: f64 = 0.5;
 /// MB of a kB.
 const MEGABYTES: f64 = 1e-3;
 
-/// Watches the memory of this process from a thread of its own, where the system says how much it is and how much there is.
+/// Watches the memory of this process from a thread of its own, where the system says how much it is and how much there is, until the command has
+/// ended.
 ///
 /// # Errors
 /// The environment variable is not a number.
-pub fn watch() -> Outcome<()> {
+pub fn watch(console: &Arc<Console>) -> Outcome<()> {
     let (most, whose) = if let Ok(text) = env::var(VARIABLE) {
         (limit(&text)?, format!("the {text} MB of {VARIABLE}"))
     } else if let Some(all) = available() {
@@ -32,10 +33,11 @@ pub fn watch() -> Outcome<()> {
         return Ok(());
     }
     // Without a thread for it, the command runs as it would without the guard.
+    let console = Arc::downgrade(console);
     let _ = thread::Builder::new().name("memory".to_owned()).spawn(move || {
-        loop {
+        while let Some(console) = console.upgrade() {
             if let Some(used) = resident().filter(|used| *used > most) {
-                process::exit(i32::from(screen::report(&beyond(used, &whose))));
+                process::exit(i32::from(console.report(&beyond(used, &whose, &console))));
             }
             thread::sleep(INTERVAL);
         }
@@ -44,8 +46,8 @@ pub fn watch() -> Outcome<()> {
 }
 
 /// The problem of a process that uses too much.
-fn beyond(used: f64, whose: &str) -> Problem {
-    let of = screen::crane_at_work().map_or(String::new(), |crane| format!(" for {crane}"));
+fn beyond(used: f64, whose: &str, console: &Console) -> Problem {
+    let of = console.crane_at_work().map_or(String::new(), |crane| format!(" for {crane}"));
     Problem::failed(
         format!("{used:.0} MB of memory{of} are more than {whose}"),
         format!(

@@ -27,7 +27,7 @@ pub fn list(format: Format, registry: &Registry, out: &mut dyn Write) -> Outcome
     }
     let mut report = Report::default();
     report.grid(grid);
-    format.print(&report, out)
+    format.print(&report, &registry.console, out)
 }
 
 /// Prints the parts of a crane.
@@ -115,7 +115,7 @@ pub fn info(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> Out
     report.grid(points);
     report.grid(combinations(registry.live(crane.as_ref())?.chain()));
     report.grid(events(description));
-    options.format.print(&report, out)
+    options.format.print(&report, &registry.console, out)
 }
 
 /// What events of a run set.

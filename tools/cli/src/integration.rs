@@ -14,7 +14,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::{
     arguments::{Limits, Step, Timing},
     problem::{Outcome, Problem},
-    screen,
+    screen::Console,
 };
 
 impl Timing {
@@ -134,28 +134,30 @@ fn unstable(crane: &dyn DynCrane, step: f64, t: f64, limit: &Limit) -> Problem {
     )
 }
 
-/// A progress bar in seconds of simulated time; hidden where standard error is not a terminal.
-pub fn progress(seconds: f64) -> ProgressBar {
-    /// Units of the bar per second.
-    const MILLISECONDS: f64 = 1e3;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]
-    let bar = ProgressBar::new((seconds * MILLISECONDS) as u64);
-    styled(bar)
-}
-
-/// A progress bar in batches of cranes.
-pub fn batches(count: usize) -> ProgressBar {
-    styled(ProgressBar::new(count as u64))
-}
-
-/// A progress bar with times.
-pub fn styled(bar: ProgressBar) -> ProgressBar {
-    if screen::is_quiet() {
-        return ProgressBar::hidden();
+impl Console {
+    /// A progress bar in seconds of simulated time; hidden where standard error is not a terminal.
+    pub fn progress(&self, seconds: f64) -> ProgressBar {
+        /// Units of the bar per second.
+        const MILLISECONDS: f64 = 1e3;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]
+        let bar = ProgressBar::new((seconds * MILLISECONDS) as u64);
+        self.styled(bar)
     }
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed} (left {eta})");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
+
+    /// A progress bar in batches of cranes.
+    pub fn batches(&self, count: usize) -> ProgressBar {
+        self.styled(ProgressBar::new(count as u64))
+    }
+
+    /// A progress bar with times.
+    fn styled(&self, bar: ProgressBar) -> ProgressBar {
+        if self.is_quiet() {
+            return ProgressBar::hidden();
+        }
+        let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed} (left {eta})");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar
+    }
 }
 
 /// Advances a bar with the time of a run.
@@ -176,10 +178,10 @@ pub fn record_checked(
     start: &Start,
     settings: &dynamics::Settings,
     (verify, limits): (bool, Limits),
-    bar: &ProgressBar,
+    (console, bar): (&Console, &ProgressBar),
 ) -> Outcome<Recorded> {
     let mut recorded = runs::record_checked(crane, start, settings, (verify, limits.bend), &mut show(bar))?;
-    recorded.wall = recorded.wall.filter(|_| !screen::is_reproducible());
+    recorded.wall = recorded.wall.filter(|_| !console.is_reproducible());
     Ok(recorded)
 }
 
@@ -187,11 +189,17 @@ pub fn record_checked(
 ///
 /// # Errors
 /// An option has a value that cannot be used.
-pub fn prepare(cases: &[Case<'_>], timing: &Timing, default: Method) -> Outcome<(Vec<Start>, Vec<dynamics::Settings>)> {
+pub fn prepare(
+    console: &Console,
+    cases: &[Case<'_>],
+    timing: &Timing,
+    default: Method,
+) -> Outcome<(Vec<Start>, Vec<dynamics::Settings>)> {
     // The last crane is the one that the arguments refer to.
     let starts = cases.iter().enumerate();
-    let starts =
-        starts.map(|(index, case)| timing.start(case.crane, index + 1 < cases.len())).collect::<Outcome<Vec<_>>>()?;
+    let starts = starts
+        .map(|(index, case)| timing.start(console, case.crane, index + 1 < cases.len()))
+        .collect::<Outcome<Vec<_>>>()?;
     let settings = cases
         .iter()
         .zip(&starts)
@@ -202,12 +210,13 @@ pub fn prepare(cases: &[Case<'_>], timing: &Timing, default: Method) -> Outcome<
 
 /// Runs cranes side by side, each as it was prepared.
 pub fn runs(
+    console: &Console,
     cases: &[Case<'_>],
     timing: &Timing,
     limits: Limits,
     (starts, settings): (Vec<Start>, Vec<dynamics::Settings>),
 ) -> Outcome<(Vec<dynamics::Settings>, Vec<Recorded>)> {
-    let bar = progress(settings.iter().map(|settings| settings.duration).sum());
+    let bar = console.progress(settings.iter().map(|settings| settings.duration).sum());
     bar.set_message("simulating");
     let results: Vec<Outcome<Recorded>> = thread::scope(|scope| {
         let runs: Vec<_> = cases
@@ -215,7 +224,8 @@ pub fn runs(
             .zip(&starts)
             .zip(&settings)
             .map(|((case, start), settings)| {
-                scope.spawn(|| record_checked(case.crane, start, settings, (!timing.no_verify, limits), &bar))
+                scope
+                    .spawn(|| record_checked(case.crane, start, settings, (!timing.no_verify, limits), (console, &bar)))
             })
             .collect();
         let broken = |_| Err(Problem::failed("a simulation crashed", "please report this as a bug"));

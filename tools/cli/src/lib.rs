@@ -64,12 +64,13 @@ mod statics;
 mod strength;
 mod variants;
 
-use std::{env, io, io::Write, process::ExitCode};
+use std::{io, io::Write, process::ExitCode, sync::Arc};
 
 use clap::{Command, CommandFactory, FromArgMatches};
 
 use arguments::Arguments;
 use problem::{Outcome, Problem};
+pub use screen::Console;
 pub use selection::{Carried, Registry};
 
 /// Parts for other commands that work with cranes, with [`files`] and [`refinement`].
@@ -77,7 +78,6 @@ pub mod toolbox {
     pub use crate::arguments::{Analysis, Choice, Format, Limits, Parameters, Step, Timing, seconds};
     pub use crate::compiled::{Library, run_with};
     pub use crate::figures::{Curve, Mark, PALETTE, Panel};
-    pub use crate::integration::{progress, styled};
     pub use crate::problem::{Outcome, Problem};
     pub use crate::simulate::{file_list, write_figure};
     pub use crate::spec_file::load;
@@ -87,35 +87,44 @@ pub mod toolbox {
 /// Does what the arguments of the process ask for, with the cranes of a registry or of a YAML file that the arguments name.
 pub fn main(registry: Registry) -> ExitCode {
     completions::answer(registry.shipped());
-    with_arguments(help::grouped(Arguments::command()), |arguments: Arguments, out| {
-        screen::choose(&arguments.manner);
-        guard::watch()?;
+    run(registry, Console::of_process(), &mut io::stdout().lock()).into()
+}
+
+/// Does what the words of a console ask for, with such cranes, and writes the results to `out`; returns the exit code.
+///
+/// Help, and what is wrong with arguments that cannot be read, go to the streams of the process, except as JSON.
+pub fn run(mut registry: Registry, console: Console, out: &mut dyn Write) -> u8 {
+    let command = help::grouped(Arguments::command());
+    with_arguments(command, console, out, |arguments: Arguments, console, out| {
+        console.choose(&arguments.manner);
+        guard::watch(console)?;
+        registry.console = Arc::clone(console);
         command::execute(arguments, registry, out)?;
-        screen::unaccepted().map_or(Ok(()), Err)
+        console.unaccepted().map_or(Ok(()), Err)
     })
 }
 
-/// Reads the arguments of the process, as `command` describes them, and acts on them; returns the exit code.
+/// Reads the words of a console, as `command` describes them, and acts on them; returns the exit code.
 pub fn with_arguments<A: FromArgMatches>(
     mut command: Command,
-    act: impl FnOnce(A, &mut dyn Write) -> Outcome<()>,
-) -> ExitCode {
+    console: Console,
+    out: &mut dyn Write,
+    act: impl FnOnce(A, &Arc<Console>, &mut dyn Write) -> Outcome<()>,
+) -> u8 {
     let parsed = command
-        .try_get_matches_from_mut(env::args_os())
+        .try_get_matches_from_mut(&console.words)
         .and_then(|matches| A::from_arg_matches(&matches).map_err(|error| error.format(&mut command)));
     let arguments = match parsed {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version arrive here too. If printing fails, there is no one to inform.
-            if error.use_stderr() && screen::is_json() {
-                return ExitCode::from(screen::report(&Problem::arguments(&error)));
+            if error.use_stderr() && console.is_json() {
+                return console.report(&Problem::arguments(&error));
             }
             let _ = error.print();
-            return if error.use_stderr() { ExitCode::from(problem::USAGE) } else { ExitCode::SUCCESS };
+            return if error.use_stderr() { problem::USAGE } else { 0 };
         }
     };
-    match act(arguments, &mut io::stdout().lock()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(problem) => ExitCode::from(screen::report(&problem)),
-    }
+    let console = Arc::new(console);
+    act(arguments, &console, out).map_or_else(|problem| console.report(&problem), |()| 0)
 }

@@ -12,17 +12,24 @@ use crate::{
     files,
     npz::{Array, npz},
     problem::{Outcome, Problem},
+    screen::Console,
 };
 
 /// Writes pose, A, K and D, squares of the undamped angular frequencies and the shapes, `xᵀ A x = 1`, as JSON or as an archive for
 /// `numpy.load`. Rows and columns are the coordinates that can move: not those that rigid drives prescribe.
-pub fn write_linearisation(file: &Path, description: &Description, q: &[f64], motions: &SmallMotions) -> Outcome<()> {
+pub fn write_linearisation(
+    console: &Console,
+    file: &Path,
+    description: &Description,
+    q: &[f64],
+    motions: &SmallMotions,
+) -> Outcome<()> {
     let arrays = arrays(q, motions)?;
     if files::ending(file, &["json", "npz"])? == "json" {
-        return files::write_text(file, &format!("{:#}\n", json(description, motions, &arrays)));
+        return console.write_text(file, &format!("{:#}\n", json(description, motions, &arrays)));
     }
     let bytes = npz(&arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
-    files::write_file(file, |out| out.write_all(&bytes))
+    console.write_file(file, |out| out.write_all(&bytes))
 }
 
 fn arrays(q: &[f64], motions: &SmallMotions) -> Outcome<Vec<Array>> {

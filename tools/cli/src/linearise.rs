@@ -22,6 +22,7 @@ use crate::{
     npz::{Array, npz},
     poses::held_number,
     problem::{Outcome, Problem},
+    screen::Console,
     selection::Registry,
     start::{Variable, row},
     state_space,
@@ -81,7 +82,7 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
         ));
     }
     let motion = match &options.from {
-        Some(file) => of_results(&crane, file, options.time)?,
+        Some(file) => of_results(&registry.console, &crane, file, options.time)?,
         None if is_closed => of_rest(&crane, options.time.unwrap_or(0.0))?,
         None => of_steady(&crane, options)?,
     };
@@ -99,7 +100,7 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
         None => model.modes()?.into_iter().map(|mode| (mode, ComplexShape::zeros(0))).collect(),
     };
     if let Some(file) = &options.file {
-        write_archive(file, &arrays(&motion, small, &model, &found))?;
+        write_archive(&registry.console, file, &arrays(&motion, small, &model, &found))?;
     }
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
@@ -129,7 +130,7 @@ pub fn linearise(options: &Linearise, registry: &Registry, out: &mut dyn Write) 
     report.excerpt(states(description, &motion), 0);
     report.excerpt(state_space::signals(&model), 0);
     report.show_all(options.analysis.all);
-    options.analysis.format.print(&report, out)
+    options.analysis.format.print(&report, &registry.console, out)
 }
 
 /// What grows, and how fast.
@@ -166,8 +167,8 @@ fn drift_value(description: &Description, model: &LinearModel, drift: &Drift) ->
 }
 
 /// The motion in a row of results, with the accelerations that follow from it.
-fn of_results(crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<MotionAbout> {
-    let found = row(file, crane.description(), at)?;
+fn of_results(console: &Console, crane: &dyn DynCrane, file: &Path, at: Option<f64>) -> Outcome<MotionAbout> {
+    let found = row(console, file, crane.description(), at)?;
     let (mut q, mut v) = (crane.guess(), vec![0.0; crane.size()]);
     let states = force_states::columns(crane.description());
     let mut x = vec![f64::NAN; states.len()];
@@ -402,8 +403,8 @@ fn arrays(motion: &MotionAbout, small: Option<&SmallMotions>, model: &LinearMode
 }
 
 /// Writes an archive.
-fn write_archive(file: &Path, arrays: &[Array]) -> Outcome<()> {
+fn write_archive(console: &Console, file: &Path, arrays: &[Array]) -> Outcome<()> {
     files::ending(file, &["npz"])?;
     let bytes = npz(arrays).map_err(|error| Problem::failed(format!("cannot make an archive: {error}"), ""))?;
-    files::write_file(file, |out| out.write_all(&bytes))
+    console.write_file(file, |out| out.write_all(&bytes))
 }

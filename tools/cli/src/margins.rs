@@ -26,10 +26,9 @@ use serde_json::json;
 use crate::{
     arguments::{self, Controller},
     envelope::{Map, map_svg, read_ranges, shown},
-    files,
-    integration::batches,
-    poses,
+    files, poses,
     problem::{Outcome, Problem, nearest},
+    screen::Console,
     selection::{Registry, refusal_message},
 };
 
@@ -59,16 +58,16 @@ pub fn margins(options: &arguments::Margins, registry: &Registry, out: &mut dyn 
     let description = crane.description();
     let axes = read_ranges(&options.ranges, description)?;
     let asked = ask(options, &crane)?;
-    let rows = rows(&asked, &axes, &crane, options.threads)?;
+    let rows = rows(&registry.console, &asked, &axes, &crane, options.threads)?;
     let mut report = Report::default();
     facts(&mut report, &asked, description, &rows);
     let grid = table(&axes, description, &rows);
     if let Some(file) = &options.file {
-        write(file, &grid, &axes, &asked, description, &rows)?;
+        write(&registry.console, file, &grid, &axes, &asked, description, &rows)?;
     }
     report.grid(grid);
     report.show_all(options.analysis.all);
-    options.analysis.format.print(&report, out)?;
+    options.analysis.format.print(&report, &registry.console, out)?;
     if rows.iter().all(|row| row.found.is_err()) {
         let why = rows.iter().find_map(|row| row.found.as_ref().err()).map_or("", String::as_str);
         return Err(Problem::failed(format!("there are no margins: {why}"), "see the column `status`"));
@@ -113,6 +112,7 @@ fn ask(options: &arguments::Margins, crane: &LiveCrane) -> Outcome<MarginsReques
 
 /// The rows of all poses, on several threads.
 fn rows(
+    console: &Console,
     asked: &MarginsRequest,
     axes: &Axes,
     crane: &LiveCrane,
@@ -125,7 +125,7 @@ fn rows(
     for values in &settings {
         check(crane, values)?;
     }
-    let bar = batches(axes.poses());
+    let bar = console.batches(axes.poses());
     let (next, found) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let work = || {
         loop {
@@ -299,6 +299,7 @@ fn table(axes: &Axes, description: &Description, rows: &[MarginRow]) -> Grid {
 
 /// Writes the table, or a map of the phase margin.
 fn write(
+    console: &Console,
     file: &Path,
     grid: &Grid,
     axes: &Axes,
@@ -308,7 +309,7 @@ fn write(
 ) -> Outcome<()> {
     if files::ending(file, &ENDINGS)? == "csv" {
         let (header, fields) = grid.fields();
-        return files::write_fields(file, header, fields);
+        return console.write_fields(file, header, fields);
     }
     let wide: Vec<usize> = (0..axes.0.len()).filter(|&index| axes.0[index].values.len() > 1).collect();
     let [x, y] = wide[..] else {
@@ -352,5 +353,5 @@ fn write(
     ];
     let map = Map { title, x: axis(x), y: axis(y), cells, words };
     let picture = map_svg(&map).map_err(|error| Problem::failed(format!("cannot draw the map: {error}"), ""))?;
-    files::write_text(file, &picture)
+    console.write_text(file, &picture)
 }

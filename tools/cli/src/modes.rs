@@ -21,7 +21,7 @@ pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outco
     let motions = crane.small_motions_at(&case.equilibrium.q);
     let modes = damped(&motions)?;
     if let Some(file) = matrices {
-        linearisation::write_linearisation(file, description, &case.equilibrium.q, &motions)?;
+        linearisation::write_linearisation(&registry.console, file, description, &case.equilibrium.q, &motions)?;
     }
     let mut report = Report::default();
     report.fact("crane", description.name.as_str(), "");
@@ -43,5 +43,5 @@ pub fn modes(options: &Modes, registry: &Registry, out: &mut dyn Write) -> Outco
     report.excerpt(undamped_modes(&case, changes.as_deref())?, lowest);
     report.excerpt(damped_modes(description, &modes), 0);
     report.show_all(options.all);
-    options.format.print(&report, out)
+    options.format.print(&report, &registry.console, out)
 }

@@ -15,6 +15,7 @@ use crate::{
     arguments::New,
     compiled, files,
     problem::{Outcome, Problem},
+    screen::Console,
     selection::Registry,
 };
 
@@ -96,7 +97,7 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
         }
         texts.extend(sources.crates());
     }
-    write_folder(&options.folder, &texts)?;
+    write_folder(&registry.console, &options.folder, &texts)?;
     writeln!(
         out,
         "{} written, based on {}: edit {SPEC} there, then run `cargo run --release`; the first build takes a few minutes",
@@ -107,13 +108,13 @@ pub fn new(options: &New, registry: &Registry, out: &mut dyn Write) -> Outcome<(
 }
 
 /// Writes a folder with its files, completely or not at all.
-fn write_folder(folder: &Path, texts: &[(PathBuf, String)]) -> Outcome<()> {
+fn write_folder(console: &Console, folder: &Path, texts: &[(PathBuf, String)]) -> Outcome<()> {
     let part = folder.with_extension("part");
     let written = (|| {
         for (file, text) in texts {
             let file = part.join(file);
             files::folder(file.parent().unwrap_or(&part))?;
-            files::write_text(&file, text)?;
+            console.write_text(&file, text)?;
         }
         fs::rename(&part, folder).map_err(|error| Problem::file(folder, &error))
     })();

@@ -8,6 +8,7 @@ use crane_model::{Description, dyn_crane::DynCrane};
 use crate::{
     files,
     problem::{Outcome, Problem},
+    screen::Console,
     selection::{find_parameter, refusal_message, set_parameters},
 };
 
@@ -21,8 +22,8 @@ pub struct ParameterTable {
 
 impl ParameterTable {
     /// Reads a CSV file whose header names live parameters, each with a unit of its dimension or without: `load_mass`, `load_mass [kg]` or `load_mass [t]`.
-    pub fn read(path: &Path, description: &Description) -> Outcome<Self> {
-        let csv = files::csv(path);
+    pub fn read(console: &Console, path: &Path, description: &Description) -> Outcome<Self> {
+        let csv = console.csv(path);
         let unreadable = |error: csv::Error| {
             let title = match error.kind() {
                 csv::ErrorKind::UnequalLengths { pos: Some(pos), expected_len, len } => {

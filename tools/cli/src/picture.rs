@@ -16,7 +16,6 @@ use crate::{
     arguments::{Choice, Export, Picture},
     files,
     problem::{Outcome, Problem},
-    screen,
     selection::Registry,
 };
 
@@ -28,7 +27,7 @@ pub fn picture(options: &Picture, registry: &Registry, out: &mut dyn Write) -> O
     let (name, figure) = figure(&options.crane, registry)?;
     let file = options.file.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
     let elements = draw(&figure, &view, &[]);
-    files::write_file(&file, |file| {
+    registry.console.write_file(&file, |file| {
         let [width, height] = view.sides().map(|side| u32::try_from(side).unwrap_or(u32::MAX));
         let mut encoder = png::Encoder::new(file, width, height);
         encoder.set_color(png::ColorType::Rgb);
@@ -43,9 +42,9 @@ pub fn scene(options: &Export, registry: &Registry, out: &mut dyn Write) -> Outc
     let (name, figure) = figure(&options.crane, registry)?;
     let file = options.file(&name);
     if ending == "glb" {
-        files::write_file(&file, |file| file.write_all(&gltf::binary(&figure, &name, files::PROGRAM)))?;
+        registry.console.write_file(&file, |file| file.write_all(&gltf::binary(&figure, &name, files::PROGRAM)))?;
     } else {
-        files::write_text(&file, &gltf::text(&figure, &name, files::PROGRAM))?;
+        registry.console.write_text(&file, &gltf::text(&figure, &name, files::PROGRAM))?;
     }
     Ok(writeln!(out, "{} written", file.display())?)
 }
@@ -56,7 +55,7 @@ fn figure(choice: &Choice, registry: &Registry) -> Outcome<(String, Figure)> {
     let name = crane.description().name.to_string();
     let case = Case::new(&name, crane.as_ref());
     if !case.equilibrium.is_stable() {
-        screen::remark(&format!("{name} is not at rest as it is drawn: see `crane statics`"));
+        registry.console.remark(&format!("{name} is not at rest as it is drawn: see `crane statics`"));
     }
     let q = shown_pose(crane.as_ref(), &case.equilibrium);
     let figure = Figure::new(&registry.live(crane.as_ref())?, &q, &q);

@@ -24,15 +24,15 @@ pub fn run_crane(options: &Run, registry: &Registry, out: &mut dyn Write) -> Out
     if let [rigid, flexible] = cases.as_slice() {
         report.grid(deflection(rigid, flexible));
     }
-    let prepared = prepare(&cases, &options.timing, Method::RECOMMENDED)?;
-    let (settings, runs) = runs(&cases, &options.timing, options.analysis.crane.limits, prepared)?;
+    let prepared = prepare(&registry.console, &cases, &options.timing, Method::RECOMMENDED)?;
+    let (settings, runs) = runs(&registry.console, &cases, &options.timing, options.analysis.crane.limits, prepared)?;
     let labels = cases.iter().map(|case| case.label);
 
     let folder = &options.folder.out;
     files::folder(folder)?;
     let mut written = Vec::new();
     for ((case, settings), run) in cases.iter().zip(&settings).zip(&runs) {
-        written.extend(write_run(folder, case.crane, settings, run)?);
+        written.extend(write_run(&registry.console, folder, case.crane, settings, run)?);
     }
     let traces = labels.clone().zip(&runs).enumerate();
     let traces: Vec<Trace<'_>> = traces
@@ -40,7 +40,7 @@ pub fn run_crane(options: &Run, registry: &Registry, out: &mut dyn Write) -> Out
         .collect();
     caution_of_runs(&mut report, labels.clone().zip(&runs));
     let description = crane.description();
-    written.extend(write_figures(folder, &format!("{}_", description.name), description, &traces)?);
+    written.extend(write_figures(&registry.console, folder, &format!("{}_", description.name), description, &traces)?);
     let page = format!("{}.html", description.name);
     write_page(&folder.join(&page), registry, (&cases, options.analysis.crane.limits), &settings, &runs)?;
     written.push(page);
@@ -51,5 +51,5 @@ pub fn run_crane(options: &Run, registry: &Registry, out: &mut dyn Write) -> Out
     add_runs(&mut report, &of_runs.collect::<Vec<_>>());
     report.grid(file_list(folder, &written));
     report.show_all(options.analysis.all);
-    options.analysis.format.print(&report, out)
+    options.analysis.format.print(&report, &registry.console, out)
 }

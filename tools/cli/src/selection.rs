@@ -1,6 +1,10 @@
 //! The cranes that the command can choose from, with parameters set.
 
-use std::{borrow::Cow, path::Path, sync::OnceLock};
+use std::{
+    borrow::Cow,
+    path::Path,
+    sync::{Arc, OnceLock},
+};
 
 use crane_codegen::{Change, Checked, Diagnostics, SourceFile, chain::Chain, check, compile, read};
 use crane_live::LiveCrane;
@@ -10,7 +14,8 @@ use crate::{
     arguments::{Choice, Parameters, STANDARD_INPUT},
     problem::{Outcome, Problem, hint, meant, nearest},
     quantity::number,
-    screen, spec_file,
+    screen::Console,
+    spec_file,
     variants::{self, Edit, edited},
 };
 
@@ -23,6 +28,8 @@ pub struct Registry {
     entries: Vec<Entry>,
     shipped: Specs,
     carried: Carried,
+    /// What the command that works with them says and reads.
+    pub console: Arc<Console>,
 }
 
 /// What a command carries that is not beside its source tree.
@@ -55,10 +62,10 @@ impl Entry {
         Self { name: name.to_owned(), file: format!("{name}.yaml"), spec, compiled: None, checked, live }
     }
 
-    fn open(&self) -> Outcome<Box<dyn DynCrane>> {
+    fn open(&self, console: &Console) -> Outcome<Box<dyn DynCrane>> {
         match &self.compiled {
             Some(compiled) => Ok(compiled.boxed_clone()),
-            None => Ok(self.live()?.boxed_clone()),
+            None => Ok(self.live(console)?.boxed_clone()),
         }
     }
 
@@ -74,12 +81,12 @@ impl Entry {
         Ok(self.checked.get_or_init(|| checked))
     }
 
-    fn live(&self) -> Outcome<&LiveCrane> {
+    fn live(&self, console: &Console) -> Outcome<&LiveCrane> {
         if let Some(live) = self.live.get() {
             return Ok(live);
         }
         let chain = &self.checked()?.chain;
-        screen::begin(chain);
+        console.begin(chain);
         Ok(self.live.get_or_init(|| LiveCrane::new(chain.clone())))
     }
 }
@@ -92,7 +99,13 @@ impl Registry {
             let compiled = index.map(|index| compiled.swap_remove(index));
             Entry { compiled, ..Entry::new(name, Cow::Borrowed(spec)) }
         };
-        Self { entries: specs.iter().map(entry).collect(), shipped: specs, carried: Carried::default() }
+        Self { entries: specs.iter().map(entry).collect(), shipped: specs, ..Self::default() }
+    }
+
+    /// No cranes, for the same command.
+    #[must_use]
+    pub fn empty(&self) -> Self {
+        Self { console: Arc::clone(&self.console), ..Self::default() }
     }
 
     /// The same cranes in a command that carries more.
@@ -116,8 +129,10 @@ impl Registry {
         let file = Path::new(given);
         match self.spec(given) {
             Some(text) => Ok(SourceFile::new(format!("{given}.yaml"), text)),
-            None if file == Path::new(STANDARD_INPUT) => spec_file::open(file, spec_file::SPEC),
-            None if file.extension().is_some() || file.exists() => spec_file::open(file, spec_file::SPEC),
+            None if file == Path::new(STANDARD_INPUT) => spec_file::open(&self.console, file, spec_file::SPEC),
+            None if file.extension().is_some() || file.exists() => {
+                spec_file::open(&self.console, file, spec_file::SPEC)
+            }
             // Neither: the message names the most similar crane.
             None => self
                 .crane(given)
@@ -127,7 +142,7 @@ impl Registry {
 
     /// The chain of a shipped crane or of a YAML file, and its text; warnings are shown, and are mistakes if `strict`.
     pub(super) fn load(&self, given: &str, strict: bool) -> Outcome<(Chain, String)> {
-        spec_file::parse(self.source(given)?, strict)
+        spec_file::parse(&self.console, self.source(given)?, strict)
     }
 
     /// Adds the crane of a YAML file, with edits of its spec, in place of one of the same name; returns its name.
@@ -135,8 +150,8 @@ impl Registry {
     /// # Errors
     /// The file cannot be read, or the spec has mistakes; or warnings, if `strict`.
     pub(super) fn add_file(&mut self, file: &Path, edits: &[Edit<'_>], strict: bool) -> Outcome<String> {
-        let spec = read(&spec_file::open(file, spec_file::SPEC)?).map_err(Problem::mistakes)?;
-        let checked = spec_file::warned(edited(&spec, edits)?, strict)?;
+        let spec = read(&spec_file::open(&self.console, file, spec_file::SPEC)?).map_err(Problem::mistakes)?;
+        let checked = spec_file::warned(&self.console, edited(&spec, edits)?, strict)?;
         Ok(self.add_checked(checked, &file.display().to_string()))
     }
 
@@ -161,7 +176,7 @@ impl Registry {
     pub(super) fn add_checked(&mut self, mut checked: Checked, file: &str) -> String {
         let name = checked.chain.name.clone();
         let entry = Entry::new(&name, Cow::Owned(checked.spec.saved().text.clone()));
-        spec_file::read_surfaces(&mut checked.chain, Path::new(file));
+        spec_file::read_surfaces(&self.console, &mut checked.chain, Path::new(file));
         self.replace(Entry { checked: checked.into(), file: file.to_owned(), ..entry });
         name
     }
@@ -223,7 +238,7 @@ impl Registry {
 
     /// All cranes, with the parameters of their specs.
     pub(super) fn all(&self) -> impl Iterator<Item = Outcome<Box<dyn DynCrane>>> {
-        self.entries.iter().map(Entry::open)
+        self.entries.iter().map(|entry| entry.open(&self.console))
     }
 
     /// Whether a crane is machine code.
@@ -243,7 +258,7 @@ impl Registry {
 
     /// A live crane of the same spec and parameters, which has derivatives of transforms too.
     pub(super) fn live(&self, crane: &dyn DynCrane) -> Outcome<LiveCrane> {
-        with_numbers_of(crane, self.entry(&crane.description().name)?.live()?.clone())
+        with_numbers_of(crane, self.entry(&crane.description().name)?.live(&self.console)?.clone())
     }
 
     fn entry(&self, name: &str) -> Outcome<&Entry> {
@@ -256,7 +271,7 @@ impl Registry {
     /// # Errors
     /// There is no such crane, or its parameters cannot have these values.
     pub fn crane(&self, name: &str) -> Outcome<Box<dyn DynCrane>> {
-        self.known(name)?.open()
+        self.known(name)?.open(&self.console)
     }
 
     /// A crane by its name, which a user has written.
@@ -366,7 +381,7 @@ impl Parameters {
             settings.iter().map(|&(index, value)| (description.parameters[index].name.to_string(), value)).collect();
         set_parameters(crane.as_mut(), &settings)?;
         if let Some(entry) = registry.entries.iter().find(|entry| entry.name == name) {
-            let warned = spec_file::warn_of(entry.checked()?, &values);
+            let warned = spec_file::warn_of(&registry.console, entry.checked()?, &values);
             if let (true, Some(problem)) = (strict, warned) {
                 return Err(problem);
             }

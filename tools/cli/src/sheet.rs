@@ -8,6 +8,7 @@ use crate::{
     files,
     problem::{Outcome, Problem},
     quantity,
+    screen::Console,
 };
 
 /// A table with a header, as written.
@@ -24,7 +25,7 @@ impl Sheet {
     ///
     /// # Errors
     /// The file cannot be read as a table, has no rows, or has a column twice.
-    pub fn read(path: &Path, help: &str) -> Outcome<Self> {
+    pub fn read(console: &Console, path: &Path, help: &str) -> Outcome<Self> {
         let unreadable = |error: csv::Error| {
             let title = match error.kind() {
                 csv::ErrorKind::UnequalLengths { pos: Some(pos), expected_len, len } => {
@@ -38,7 +39,7 @@ impl Sheet {
             };
             Problem::usage(title, help)
         };
-        let mut csv = files::csv(path).map_err(unreadable)?;
+        let mut csv = console.csv(path).map_err(unreadable)?;
         let headers = csv.headers().map_err(unreadable)?.clone();
         files::check_separators(path, &headers)?;
         let columns: Vec<(String, Option<String>)> =

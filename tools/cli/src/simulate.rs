@@ -20,8 +20,9 @@ use crate::{
     arguments::Run,
     figures::{Curve, Mark, PALETTE, Panel, svg},
     files,
-    integration::{progress, record_checked},
+    integration::record_checked,
     problem::{Outcome, Problem},
+    screen::Console,
     selection::Registry,
 };
 
@@ -40,17 +41,23 @@ pub fn simulate(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outc
     let crane = options.analysis.crane.open(registry)?;
     let crane = crane.as_ref();
     let name = &crane.description().name;
-    let start = options.timing.start(crane, false)?;
+    let start = options.timing.start(&registry.console, crane, false)?;
     let settings = options.timing.settings(crane, &start, Method::RECOMMENDED)?;
     files::folder(&options.folder.out)?;
-    let bar = progress(settings.duration);
+    let bar = registry.console.progress(settings.duration);
     let checks = (!options.timing.no_verify, options.analysis.crane.limits);
-    let recorded = record_checked(crane, &start, &settings, checks, &bar)?;
+    let recorded = record_checked(crane, &start, &settings, checks, (&registry.console, &bar))?;
     bar.finish_and_clear();
 
-    let mut written = write_run(&options.folder.out, crane, &settings, &recorded)?;
+    let mut written = write_run(&registry.console, &options.folder.out, crane, &settings, &recorded)?;
     let traces = [Trace { label: name, table: &recorded.table, dashed: false }];
-    written.extend(write_figures(&options.folder.out, &format!("{name}_"), crane.description(), &traces)?);
+    written.extend(write_figures(
+        &registry.console,
+        &options.folder.out,
+        &format!("{name}_"),
+        crane.description(),
+        &traces,
+    )?);
 
     let mut report = Report::default();
     report.fact("crane", name.as_str(), "");
@@ -68,7 +75,7 @@ pub fn simulate(options: &Run, registry: &Registry, out: &mut dyn Write) -> Outc
     report.grid(extremes(&[(name, &recorded)]));
     add_runs(&mut report, &[(VALUE, crane, &recorded)]);
     report.grid(file_list(&options.folder.out, &written));
-    options.analysis.format.print(&report, out)
+    options.analysis.format.print(&report, &registry.console, out)
 }
 
 /// Adds the method, and its tolerance if it has one.
@@ -93,6 +100,7 @@ pub fn file_list(folder: &Path, written: &[String]) -> Grid {
 
 /// Writes the results and the record of a run; returns their file names.
 pub fn write_run(
+    console: &Console,
     folder: &Path,
     crane: &dyn DynCrane,
     settings: &dynamics::Settings,
@@ -100,13 +108,14 @@ pub fn write_run(
 ) -> Outcome<Vec<String>> {
     let name = &crane.description().name;
     let (csv, json) = (format!("{name}.csv"), format!("{name}.json"));
-    files::write_csv(&folder.join(&csv), &recorded.table)?;
-    files::write_text(&folder.join(&json), &format!("{:#}\n", record(crane, settings, recorded, files::PROGRAM)))?;
+    console.write_csv(&folder.join(&csv), &recorded.table)?;
+    console.write_text(&folder.join(&json), &format!("{:#}\n", record(crane, settings, recorded, files::PROGRAM)))?;
     Ok(vec![csv, json])
 }
 
 /// Writes figures of the points' paths in a plane and of the drives' torques and forces; returns their file names.
 pub fn write_figures(
+    console: &Console,
     folder: &Path,
     prefix: &str,
     description: &Description,
@@ -117,7 +126,7 @@ pub fn write_figures(
     for (what, panels, columns) in figures {
         if panels.iter().any(|panel| !panel.curves.is_empty()) {
             let file = format!("{prefix}{what}.svg");
-            write_figure(&folder.join(&file), &panels, columns)?;
+            write_figure(console, &folder.join(&file), &panels, columns)?;
             written.push(file);
         }
     }
@@ -128,10 +137,10 @@ pub fn write_figures(
 ///
 /// # Errors
 /// The file system refuses.
-pub fn write_figure(file: &Path, panels: &[Panel], columns: usize) -> Outcome<()> {
+pub fn write_figure(console: &Console, file: &Path, panels: &[Panel], columns: usize) -> Outcome<()> {
     let text = svg(panels, columns)
         .map_err(|error| Problem::failed(format!("cannot draw {}: {error}", file.display()), ""))?;
-    files::write_text(file, &text)
+    console.write_text(file, &text)
 }
 
 /// Values of two columns as points.

@@ -7,9 +7,8 @@ use crane_page::shapes::surfaces;
 
 use crate::{
     arguments::STANDARD_INPUT,
-    files,
     problem::{FAILED, Outcome, Problem},
-    screen,
+    screen::Console,
 };
 
 /// What to do about a file that cannot be read as a spec.
@@ -19,33 +18,33 @@ pub const SPEC: &str = "give a YAML file that describes a crane, or the name of 
 ///
 /// # Errors
 /// The file cannot be read, or the spec has mistakes.
-pub fn load(spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
-    parse(open(spec, SPEC)?, strict)
+pub fn load(console: &Console, spec: &Path, strict: bool) -> Outcome<(Chain, String)> {
+    parse(console, open(console, spec, SPEC)?, strict)
 }
 
 /// A valid chain and its text, or every mistake; warnings are printed, and are mistakes if `strict`.
 ///
 /// # Errors
 /// Those mistakes.
-pub fn parse(source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
-    Ok((check(&source, strict)?.chain, source.text))
+pub fn parse(console: &Console, source: SourceFile, strict: bool) -> Outcome<(Chain, String)> {
+    Ok((check(console, &source, strict)?.chain, source.text))
 }
 
 /// A valid crane, or every mistake; warnings are printed, and are mistakes if `strict`.
 ///
 /// # Errors
 /// Those mistakes.
-pub fn check(source: &SourceFile, strict: bool) -> Outcome<Checked> {
-    warned(compile::check(source).map_err(Problem::mistakes)?, strict)
+pub fn check(console: &Console, source: &SourceFile, strict: bool) -> Outcome<Checked> {
+    warned(console, compile::check(source).map_err(Problem::mistakes)?, strict)
 }
 
 /// A valid crane whose warnings are printed, and are mistakes if `strict`.
 ///
 /// # Errors
 /// Those.
-pub fn warned(checked: Checked, strict: bool) -> Outcome<Checked> {
+pub fn warned(console: &Console, checked: Checked, strict: bool) -> Outcome<Checked> {
     if !checked.warnings.is_empty() {
-        screen::warn(&checked.warnings);
+        console.warn(&checked.warnings);
         if strict {
             return Err(Problem::AlreadyReported { exit_code: FAILED });
         }
@@ -54,22 +53,22 @@ pub fn warned(checked: Checked, strict: bool) -> Outcome<Checked> {
 }
 
 /// Reads the surfaces that a spec names, beside its file; says which could not be read.
-pub fn read_surfaces(chain: &mut Chain, spec: &Path) {
+pub fn read_surfaces(console: &Console, chain: &mut Chain, spec: &Path) {
     let unread = surfaces::read_surfaces(chain, spec, |file, most| {
-        files::remember(file);
+        console.remember(file);
         crane_codegen::files::read_file(file, most)
     });
     if let Some(told) = unread {
-        screen::remark(&told);
+        console.remark(&told);
     }
 }
 
 /// Shows warnings about a crane that appear only with these values of its parameters; returns them as a problem if there are any.
-pub fn warn_of(checked: &Checked, set: &[(String, f64)]) -> Option<Problem> {
+pub fn warn_of(console: &Console, checked: &Checked, set: &[(String, f64)]) -> Option<Problem> {
     let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     let added = checked.warnings_with(&set).without(&checked.warnings);
     (!added.is_empty()).then(|| {
-        screen::warn(&added);
+        console.warn(&added);
         Problem::AlreadyReported { exit_code: FAILED }
     })
 }
@@ -78,7 +77,7 @@ pub fn warn_of(checked: &Checked, set: &[(String, f64)]) -> Option<Problem> {
 ///
 /// # Errors
 /// The file cannot be read.
-pub fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
+pub fn open(console: &Console, file: &Path, help: &str) -> Outcome<SourceFile> {
     let read = if file == Path::new(STANDARD_INPUT) {
         build::read_with("standard input", io::stdin(), &crane_specs::spec).map(|source| (source, Vec::new()))
     } else {
@@ -89,7 +88,7 @@ pub fn open(file: &Path, help: &str) -> Outcome<SourceFile> {
         build::Failure::Mistakes(mistakes) => Problem::mistakes(mistakes),
     })?;
     for file in &read {
-        files::remember(file);
+        console.remember(file);
     }
     Ok(source)
 }

@@ -46,9 +46,9 @@ pub fn stability(options: &Stability, registry: &Registry, out: &mut dyn Write) 
 
     files::folder(&options.out)?;
     let file = format!("{}_stability.svg", description.name);
-    write_figure(&options.out.join(&file), &regions(modes, description.step), 1)?;
+    write_figure(&registry.console, &options.out.join(&file), &regions(modes, description.step), 1)?;
     report.grid(file_list(&options.out, &[file]));
-    options.analysis.format.print(&report, out)
+    options.analysis.format.print(&report, &registry.console, out)
 }
 
 /// Limits at every pose, one method after the other.

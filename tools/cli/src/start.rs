@@ -16,6 +16,7 @@ use crate::{
     files,
     problem::{Outcome, Problem, nearest},
     quantity::number,
+    screen::Console,
 };
 
 /// Suffix of a coordinate's name in the name of its rate.
@@ -94,7 +95,7 @@ impl Timing {
     ///
     /// # Errors
     /// An option has a value that cannot be used.
-    pub fn start(&self, crane: &dyn DynCrane, skip_unknown_names: bool) -> Outcome<Start> {
+    pub fn start(&self, console: &Console, crane: &dyn DynCrane, skip_unknown_names: bool) -> Outcome<Start> {
         if self.from.is_none() && self.start.is_empty() {
             return Ok(Start::new(crane)?);
         }
@@ -104,7 +105,7 @@ impl Timing {
         start.rests = false;
         let mut given = Given::default();
         if let Some(file) = &self.from {
-            for (variable, value) in row(file, description, None)?.values {
+            for (variable, value) in row(console, file, description, None)?.values {
                 variable.set(&mut start, value);
                 variable.give(&mut given);
             }
@@ -227,10 +228,10 @@ const SAME_TIME: f64 = 1e-9;
 ///
 /// # Errors
 /// The file cannot be used, or has no row at that time.
-pub fn row(file: &Path, description: &Description, at: Option<f64>) -> Outcome<ResultRow> {
+pub fn row(console: &Console, file: &Path, description: &Description, at: Option<f64>) -> Outcome<ResultRow> {
     let help = "give a CSV file of results written by `crane simulate` or `crane run`";
     let unreadable = |error: csv::Error| Problem::usage(format!("cannot use {}: {error}", file.display()), help);
-    let mut csv = files::csv(file).map_err(unreadable)?;
+    let mut csv = console.csv(file).map_err(unreadable)?;
     let headers = csv.headers().map_err(unreadable)?.clone();
     files::check_separators(file, &headers)?;
     let name_of = |header: &str| header.split(" [").next().unwrap_or(header).to_owned();

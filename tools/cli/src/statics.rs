@@ -25,7 +25,7 @@ pub fn statics(options: &Analysis, registry: &Registry, out: &mut dyn Write) -> 
         report.grid(history(&case.equilibrium));
     }
     report.show_all(options.all);
-    options.format.print(&report, out)?;
+    options.format.print(&report, &registry.console, out)?;
     Ok(case.stable()?)
 }
 

@@ -11,7 +11,7 @@ use crane_model::results::cautions::BEND;
 use crane_page::tables::Report;
 
 use super::number::above_zero;
-use crate::{problem::Outcome, screen};
+use crate::{problem::Outcome, screen::Console};
 
 /// Output format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -30,10 +30,10 @@ impl Format {
     ///
     /// # Errors
     /// The output is closed.
-    pub fn print(self, report: &Report, out: &mut dyn Write) -> Outcome<()> {
-        screen::note(report);
+    pub fn print(self, report: &Report, console: &Console, out: &mut dyn Write) -> Outcome<()> {
+        console.note(report);
         match self {
-            Format::Table => Ok(screen::print(report, out)?),
+            Format::Table => Ok(console.print(report, out)?),
             Format::Json => Ok(writeln!(out, "{:#}", report.json())?),
             Format::Html => Ok(write!(out, "{}", report.html())?),
         }

@@ -15,9 +15,7 @@ use crane_page::diagram::diagram;
 use crate::{
     arguments::{Arguments, Book},
     compiled::quoted,
-    files,
     problem::{FAILED, Outcome, Problem},
-    screen,
     selection::Registry,
 };
 
@@ -54,10 +52,10 @@ pub fn book(options: &Book, registry: &Registry, dispatch: Dispatch, out: &mut d
     let binder = Binder { options, registry, live: &live, chain, dispatch };
     let mut sections = vec![binder.crane()?, binder.spec()];
     for asked in binder.asked() {
-        screen::remark(&format!("{}: {}", sections.len() + 1, asked.title));
+        registry.console.remark(&format!("{}: {}", sections.len() + 1, asked.title));
         sections.push(binder.computed(asked)?);
     }
-    files::write_text(&options.file, &html::page(&binder.cover(), &sections))?;
+    registry.console.write_text(&options.file, &html::page(&binder.cover(), &sections))?;
     writeln!(out, "{} written: open it in a browser and print it", options.file.display())?;
     let failed = sections.iter().find_map(|section| match &section.content {
         Content::Failed(why, _) => Some(format!("{}: {why}", section.title)),

@@ -5,7 +5,7 @@ use std::{
     env::consts,
     ffi::OsStr,
     fs::{self, File, TryLockError},
-    io::{self, IsTerminal, Write},
+    io::{self, IsTerminal},
     path::{Path, PathBuf},
     process::{Command, Stdio},
     time::{Instant, UNIX_EPOCH},
@@ -15,6 +15,7 @@ use super::{LOCK, Library, root};
 use crate::{
     files,
     problem::{FAILED, Outcome, Problem},
+    screen::Console,
 };
 
 /// Files of every crate, and what they are made from.
@@ -75,6 +76,8 @@ impl Product {
 
 /// A crate of compiled cranes.
 pub struct Package<'a> {
+    /// Of the command that needs it.
+    pub console: &'a Console,
     /// What cargo makes of it.
     pub product: Product,
     /// The library that it runs or exports.
@@ -91,7 +94,7 @@ pub fn run_package(package: &Package<'_>, arguments: impl Fn(&mut Command)) -> O
         if let Some(outcome) = start(&program, &arguments) {
             return outcome;
         }
-        say(&format!("{}: the kept program does not start; compiling it again", package.names()));
+        package.console.tell(&format!("{}: the kept program does not start; compiling it again", package.names()));
     }
     let program = package.compiled()?;
     start(&program, &arguments).unwrap_or_else(|| {
@@ -115,7 +118,7 @@ impl Package<'_> {
         let file = folder.join(self.product.kept());
         let kept = file.exists() && fs::read_to_string(folder.join(STAMP)).is_ok_and(|stamp| stamp == this_command());
         if kept {
-            say(&format!("{}: compiled earlier, kept in {}", self.names(), folder.display()));
+            self.console.tell(&format!("{}: compiled earlier, kept in {}", self.names(), folder.display()));
         }
         Ok(kept.then_some(file))
     }
@@ -125,14 +128,14 @@ impl Package<'_> {
         let begin = Instant::now();
         let cache = cache()?;
         let folder = cache.join(self.name);
-        let lock = wait_for_other_compiles(&cache)?;
+        let lock = wait_for_other_compiles(self.console, &cache)?;
         // Even if another command has compiled it meanwhile: that program may be the one that does not start.
         let built = self.build(&cache, lock)?;
         let file = folder.join(self.product.kept());
         let _ = fs::remove_file(folder.join(STAMP));
         copy(&built, &file)?;
-        files::write_text(&folder.join(STAMP), &this_command())?;
-        say(&format!("{}: compiled in {:.1} s", self.names(), begin.elapsed().as_secs_f64()));
+        self.console.write_text(&folder.join(STAMP), &this_command())?;
+        self.console.tell(&format!("{}: compiled in {:.1} s", self.names(), begin.elapsed().as_secs_f64()));
         Ok(file)
     }
 
@@ -145,7 +148,7 @@ impl Package<'_> {
     ///
     /// The lock passes to cargo: should this command be killed, it lasts until cargo has ended too.
     fn build(&self, cache: &Path, lock: File) -> Outcome<PathBuf> {
-        let Self { product, library, name: package, cranes } = *self;
+        let Self { console, product, library, name: package, cranes } = *self;
         if !root().join("crane-model").exists() {
             let title = format!("the source of `crane` is no longer at {}", root().display());
             return Err(Problem::failed(title, "build `crane` again from its new location, or omit --compile"));
@@ -174,15 +177,15 @@ impl Package<'_> {
         for (file, template) in FILES.into_iter().chain([product.source()]) {
             let content =
                 values.iter().fold(template.to_owned(), |text, (placeholder, value)| text.replace(placeholder, value));
-            keep(&folder.join(file), &content)?;
+            keep(console, &folder.join(file), &content)?;
         }
         for (name, text) in cranes {
-            keep(&folder.join(name).with_extension("yaml"), text)?;
+            keep(console, &folder.join(name).with_extension("yaml"), text)?;
         }
-        keep(&folder.join("Cargo.lock"), LOCK)?;
+        keep(console, &folder.join("Cargo.lock"), LOCK)?;
 
         let target = target().unwrap_or_else(|| cache.join("target"));
-        say(&format!("{names}: compiling; the {} is kept for later", product.name()));
+        console.tell(&format!("{names}: compiling; the {} is kept for later", product.name()));
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut build = Command::new(&cargo);
         build.args(["build", "--release", "--manifest-path"]).arg(folder.join("Cargo.toml"));
@@ -205,7 +208,7 @@ impl Package<'_> {
 }
 
 /// Takes the lock of the cache, with a message if another command holds it.
-fn wait_for_other_compiles(cache: &Path) -> Outcome<File> {
+fn wait_for_other_compiles(console: &Console, cache: &Path) -> Outcome<File> {
     files::folder(cache)?;
     let path = cache.join("compiling");
     let failed = |error: io::Error| Problem::file(&path, &error);
@@ -213,7 +216,7 @@ fn wait_for_other_compiles(cache: &Path) -> Outcome<File> {
     match file.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => {
-            say("waiting for another compilation to finish");
+            console.tell("waiting for another compilation to finish");
             file.lock().map_err(failed)?;
         }
         Err(TryLockError::Error(error)) => return Err(failed(error)),
@@ -239,12 +242,12 @@ fn this_command() -> String {
 }
 
 /// Writes a file unless it already has this text: cargo compiles again what is newer.
-fn keep(file: &Path, text: &str) -> Outcome<()> {
+fn keep(console: &Console, file: &Path, text: &str) -> Outcome<()> {
     if fs::read_to_string(file).is_ok_and(|kept| kept == text) {
         return Ok(());
     }
     files::folder(file.parent().unwrap_or(file))?;
-    files::write_text(file, text)
+    console.write_text(file, text)
 }
 
 /// Folder where programs are kept: never one where other users may write.
@@ -266,10 +269,4 @@ fn target() -> Option<PathBuf> {
     let target = profile.parent()?;
     (profile.file_name() == Some(OsStr::new("release")) && target.join("CACHEDIR.TAG").exists())
         .then(|| target.to_owned())
-}
-
-/// Tells the user something that is not part of the results.
-fn say(text: &str) {
-    // Not eprintln: it panics where standard error is closed.
-    let _ = writeln!(io::stderr(), "{text}");
 }

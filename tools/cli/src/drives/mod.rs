@@ -17,16 +17,16 @@ const ROWS: usize = 40;
 pub fn drives(options: &arguments::Drives, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let crane = options.analysis.crane.open(registry)?;
     let crane = crane.as_ref();
-    let lists = options.parts.iter().map(|file| List::read(file)).collect::<Outcome<Vec<List>>>()?;
+    let lists = options.parts.iter().map(|file| List::read(&registry.console, file)).collect::<Outcome<Vec<List>>>()?;
     let case = Case::new(VALUE, crane);
     let mut report = Report::default();
     verdicts(&mut report, std::slice::from_ref(&case));
     if !case.equilibrium.is_stable() {
-        options.analysis.format.print(&report, out)?;
+        options.analysis.format.print(&report, &registry.console, out)?;
         return Ok(case.stable()?);
     }
     let timing = (&options.timing, options.analysis.crane.limits);
-    let (_, recorded) = strength::record_manoeuvre(timing, crane, &mut report)?;
+    let (_, recorded) = strength::record_manoeuvre(&registry.console, timing, crane, &mut report)?;
     let duties = Duties::new(crane.description(), &recorded.table);
     let needs = parts::needs(&duties, crane.description());
     if needs.is_empty() {
@@ -43,7 +43,7 @@ pub fn drives(options: &arguments::Drives, registry: &Registry, out: &mut dyn Wr
         report.excerpt(grid, ROWS);
     }
     report.show_all(options.analysis.all);
-    options.analysis.format.print(&report, out)
+    options.analysis.format.print(&report, &registry.console, out)
 }
 
 /// A row per need and part of its kind: those that suffice first, the most used one first of all.

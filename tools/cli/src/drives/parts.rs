@@ -10,6 +10,7 @@ use crane_page::tables::Cell;
 
 use crate::{
     problem::{Outcome, Problem},
+    screen::Console,
     sheet::Sheet,
 };
 
@@ -163,10 +164,10 @@ impl List {
     ///
     /// # Errors
     /// The file cannot be read as such a list.
-    pub fn read(path: &Path) -> Outcome<Self> {
+    pub fn read(console: &Console, path: &Path) -> Outcome<Self> {
         let help = "write a CSV table such as `part,torque [N m],speed [rpm]` for motors; with `force` it lists linear drives, with `bore` cylinders, with \
                     `flow` pumps";
-        let sheet = Sheet::read(path, help)?;
+        let sheet = Sheet::read(console, path, help)?;
         let is_of = |kind: &Kind| sheet.place(kind.columns()[0].0).is_some();
         let mut kinds = Kind::ALL.into_iter().filter(is_of);
         let path = path.display().to_string();

@@ -6,8 +6,8 @@ use crane_model::envelope::{Coverage, Envelope};
 
 use crate::{
     figures::{Curve, Mark, PALETTE, Panel, shade},
-    files,
     problem::{Outcome, Problem},
+    screen::Console,
 };
 
 use super::{
@@ -53,6 +53,7 @@ impl Heading {
 
 /// Writes the figures that apply; returns their names.
 pub fn write_chart_figures(
+    console: &Console,
     folder: &Path,
     name: &str,
     asked: &Envelope,
@@ -66,7 +67,7 @@ pub fn write_chart_figures(
     let mut save = |what: &str, picture: Result<String, String>| -> Outcome<()> {
         let file = format!("{name}_{what}.svg");
         let picture = picture.map_err(|error| Problem::failed(format!("cannot draw {file}: {error}"), ""))?;
-        files::write_text(&folder.join(&file), &picture)?;
+        console.write_text(&folder.join(&file), &picture)?;
         written.push(file);
         Ok(())
     };

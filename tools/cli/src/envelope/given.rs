@@ -10,6 +10,7 @@ use crane_page::tables::{Cell, Grid, Heading};
 
 use crate::{
     problem::{Outcome, Problem},
+    screen::Console,
     sheet::Sheet,
 };
 
@@ -46,12 +47,18 @@ impl Given {
     ///
     /// # Errors
     /// The file cannot be read, lacks a column, has one that no range varies, or has something else than numbers.
-    pub fn read(path: &Path, unit_of_load: &str, description: &Description, ranges: &Axes) -> Outcome<Self> {
+    pub fn read(
+        console: &Console,
+        path: &Path,
+        unit_of_load: &str,
+        description: &Description,
+        ranges: &Axes,
+    ) -> Outcome<Self> {
         /// The columns of loads and of radii.
         const COLUMNS: [&str; 2] = ["load", "radius"];
         let help = "write a CSV table with the columns radius and load, such as `radius [m],load [t]` and `6.5,3.2`, or with positions of drives in \
                     place of the radius";
-        let sheet = Sheet::read(path, help)?;
+        let sheet = Sheet::read(console, path, help)?;
         let [load, radius] = COLUMNS.map(|name| sheet.place(name));
         let others: Vec<&str> = sheet.names().filter(|name| !COLUMNS.contains(name)).collect();
         let Some(load) = load.filter(|_| radius.is_some() || !others.is_empty()) else {

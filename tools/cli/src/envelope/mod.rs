@@ -30,10 +30,9 @@ use crate::{
     arguments::{Envelope, Format, LoadLimits},
     figures::wrapped,
     files,
-    integration::styled,
     journal::{self, Journal, Request},
     problem::{Outcome, Problem},
-    screen,
+    screen::Console,
     selection::{Registry, refusal_message},
     strength::load_parameter,
 };
@@ -62,11 +61,12 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     let description = crane.description();
     let unit_of_load = &description.parameters[asked.load].unit;
     let given = options.given.as_deref();
-    let given = given.map(|file| Given::read(file, unit_of_load, description, &asked.axes)).transpose()?;
+    let given =
+        given.map(|file| Given::read(&registry.console, file, unit_of_load, description, &asked.axes)).transpose()?;
     files::folder(&options.folder.out)?;
     let name = format!("{}_envelope", description.name);
     let (rows, journals) = rows_of(options, registry, crane.as_ref(), (&asked, &layout))?;
-    let seconds = screen::seconds_since(begin);
+    let seconds = registry.console.seconds_since(begin);
 
     let mut report = Report::default();
     let coverage = Coverage::new(crane.as_ref(), &asked.limits);
@@ -75,7 +75,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
         report.fact("wall time", seconds, "s");
     }
     report.value("parameters", identity::parameters(crane.as_ref(), &asked));
-    let mut written = rows::write_rows(&options.folder.out, &name, &asked, &layout, &rows)?;
+    let mut written = rows::write_rows(&registry.console, &options.folder.out, &name, &asked, &layout, &rows)?;
     let surface = surface::Surface::new(&asked, &layout, &rows);
     let chart = surface.as_ref().map(|surface| Chart { surface, rows: &rows, asked_radii: &options.radii });
     let [by_radius, by_place] = chart.as_ref().map_or_else(chart::empty, |chart| [chart.table(), chart.by_place()]);
@@ -83,7 +83,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
         for (end, grid) in [("load_chart", &by_radius), ("loads_by_place", &by_place)] {
             let file = format!("{name}_{end}.csv");
             let (header, rows) = grid.fields();
-            files::write_fields(&options.folder.out.join(&file), header, rows)?;
+            registry.console.write_fields(&options.folder.out.join(&file), header, rows)?;
             written.push(file);
         }
         chart.by_radius().into_iter().chain(chart.plates()).for_each(|grid| report.shown(grid));
@@ -102,6 +102,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     report.grid(summary::governing(&asked, &layout, &rows));
     let heading = figures::Heading::new(&asked, &layout, &coverage);
     written.extend(figures::write_chart_figures(
+        &registry.console,
         &options.folder.out,
         &name,
         &asked,
@@ -113,8 +114,8 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     written.push(companion.clone());
     journals.into_iter().try_for_each(Journal::remove)?;
     report.grid(crate::simulate::file_list(&options.folder.out, &written));
-    files::write_text(&options.folder.out.join(&companion), &format!("{:#}\n", report.json()))?;
-    options.analysis.format.print(&report, out)?;
+    registry.console.write_text(&options.folder.out.join(&companion), &format!("{:#}\n", report.json()))?;
+    options.analysis.format.print(&report, &registry.console, out)?;
     if options.analysis.format == Format::Table {
         writeln!(out, "\n{}", wrapped(chart::NOTE, chart::SCREEN).join("\n"))?;
     }
@@ -138,7 +139,7 @@ fn rows_of(
         };
         let (journal, records) = Journal::open(&file, &request, options.restart)?;
         let kept = kept_rows(&records, asked, layout);
-        Ok((rate(asked, layout, crane, options.threads, &journal, kept)?, journal))
+        Ok((rate(&registry.console, asked, layout, crane, options.threads, &journal, kept)?, journal))
     };
     if !options.combinations {
         let (rows, journal) = rate(crane, name)?;
@@ -243,6 +244,7 @@ fn kept_rows(
 
 /// Rates the poses that the journal does not have yet; returns all rows, in order.
 fn rate(
+    console: &Console,
     asked: &crane_model::envelope::Envelope,
     layout: &Layout,
     crane: &dyn DynCrane,
@@ -253,7 +255,7 @@ fn rate(
     let threads = threads.map_or_else(thread::available_parallelism, Ok).map_or(1, NonZeroUsize::get);
     let pieces: Vec<usize> =
         (0..asked.pieces()).filter(|piece| asked.poses_of(*piece).any(|pose| kept[pose].is_none())).collect();
-    let bar = styled(indicatif::ProgressBar::new(asked.axes.poses() as u64));
+    let bar = console.batches(asked.axes.poses());
     bar.set_message("poses");
     bar.inc(kept.iter().flatten().count() as u64);
     let state = Mutex::new((kept, Ok(())));

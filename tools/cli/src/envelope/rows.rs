@@ -12,9 +12,9 @@ use crane_model::{
 use crane_page::tables::number_text;
 
 use crate::{
-    files,
     npz::{Array, npz},
     problem::{Outcome, Problem},
+    screen::Console,
 };
 
 /// The rating of a pose.
@@ -195,6 +195,7 @@ pub fn field(number: f64) -> String {
 
 /// Writes all rows as CSV and as arrays; returns the names of the files.
 pub fn write_rows(
+    console: &Console,
     folder: &Path,
     name: &str,
     asked: &Envelope,
@@ -208,7 +209,7 @@ pub fn write_rows(
         let numbers = row.numbers.iter().copied().map(field);
         numbers.chain(row.governing.iter().cloned()).collect()
     });
-    files::write_fields(&folder.join(&csv), header, fields)?;
+    console.write_fields(&folder.join(&csv), header, fields)?;
 
     let archive = format!("{name}.npz");
     let axes = asked.axes.0.iter().zip(&layout.columns).map(|(axis, column)| Array {
@@ -225,6 +226,6 @@ pub fn write_rows(
     });
     let bytes = npz(&axes.chain(columns).collect::<Vec<_>>())
         .map_err(|error| Problem::failed(format!("cannot make {archive}: {error}"), ""))?;
-    files::write_file(&folder.join(&archive), |file| file.write_all(&bytes))?;
+    console.write_file(&folder.join(&archive), |file| file.write_all(&bytes))?;
     Ok(vec![csv, archive])
 }

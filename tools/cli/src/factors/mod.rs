@@ -15,7 +15,7 @@ use crane_page::tables::{Case, Cell, Grid, Report, VALUE, verdicts};
 
 use crate::{
     arguments,
-    integration::{progress, show},
+    integration::show,
     problem::{Outcome, Problem},
     selection::Registry,
     strength,
@@ -36,12 +36,12 @@ pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn 
     let mut report = Report::default();
     verdicts(&mut report, std::slice::from_ref(&case));
     if !case.equilibrium.is_stable() {
-        options.analysis.format.print(&report, out)?;
+        options.analysis.format.print(&report, &registry.console, out)?;
         return Ok(case.stable()?);
     }
     let timing = (&options.timing, options.analysis.crane.limits);
-    let (start, recorded) = strength::record_manoeuvre(timing, crane, &mut report)?;
-    let bar = progress(recorded.run.time);
+    let (start, recorded) = strength::record_manoeuvre(&registry.console, timing, crane, &mut report)?;
+    let bar = registry.console.progress(recorded.run.time);
     let rest = QuasiStatic::along(crane, &start, &recorded.table, POSES, &mut show(&bar));
     bar.finish_and_clear();
     if rest.instants.is_empty() {
@@ -73,7 +73,7 @@ pub fn factors(options: &arguments::Factors, registry: &Registry, out: &mut dyn 
         report.grid(tabulated::table());
     }
     report.show_all(options.analysis.all);
-    options.analysis.format.print(&report, out)
+    options.analysis.format.print(&report, &registry.console, out)
 }
 
 /// A quantity, and its extremes.

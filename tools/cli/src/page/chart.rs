@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use crate::{
     envelope::facts_of_chart,
     problem::{Outcome, Problem},
+    screen::Console,
 };
 
 /// Ends of the names of the figures, and what they show.
@@ -29,8 +30,8 @@ pub struct LoadCharts {
 }
 
 /// The figures and facts beside the table of an envelope, `…_envelope.csv`, if it is one of this crane.
-pub fn read_chart(table: &Path, crane: &dyn DynCrane) -> Outcome<LoadCharts> {
-    crate::files::remember(table);
+pub fn read_chart(console: &Console, table: &Path, crane: &dyn DynCrane) -> Outcome<LoadCharts> {
+    console.remember(table);
     let figures = figures(table)?;
     Ok(LoadCharts { figures, facts: facts_of_chart(table, crane)? })
 }

@@ -25,7 +25,7 @@ use crate::{
     book, compiled, fatigue, files,
     integration::{prepare, runs},
     problem::Outcome,
-    refinement, screen,
+    refinement,
     selection::Registry,
     sensitivity::moves_of_page,
 };
@@ -35,13 +35,17 @@ pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outco
     let crane = options.crane.open(registry)?;
     let twin = twin::rigid(crane.as_ref(), registry);
     let cases = cases(crane.as_ref(), twin.as_deref());
-    let chart = options.envelope.as_deref().map(|table| chart::read_chart(table, crane.as_ref())).transpose()?;
+    let chart = options
+        .envelope
+        .as_deref()
+        .map(|table| chart::read_chart(&registry.console, table, crane.as_ref()))
+        .transpose()?;
     let moves = if options.sensitivity { moves(crane.as_ref(), registry)? } else { Value::Null };
     let fatigue = options.fatigue.as_ref().map(|given| fatigue_of(options, given, registry)).transpose()?;
     let instrument = options.instrument.as_deref();
     let extras = Extras { chart: chart.unwrap_or_default(), moves, instrument, fatigue };
-    let prepared = prepare(&cases, &options.timing, Method::RECOMMENDED)?;
-    let (settings, runs) = runs(&cases, &options.timing, options.crane.limits, prepared)?;
+    let prepared = prepare(&registry.console, &cases, &options.timing, Method::RECOMMENDED)?;
+    let (settings, runs) = runs(&registry.console, &cases, &options.timing, options.crane.limits, prepared)?;
     write_with(&options.file, registry, (&cases, options.crane.limits), &settings, &runs, extras)?;
     writeln!(out, "{} written: open it in a browser", options.file.display())?;
     Ok(())
@@ -127,11 +131,11 @@ fn write_with(
         tables: Some(tables),
         chart: figures,
         load_chart: facts,
-        command: Some(compiled::typed()),
+        command: Some(compiled::typed(&registry.console)),
         spec: cases.last().and_then(|case| registry.spec(&case.crane.description().name)),
         instrument,
     };
-    files::write_text(file, &page(&subjects, texts, files::PROGRAM)?)
+    registry.console.write_text(file, &page(&subjects, texts, files::PROGRAM)?)
 }
 
 fn all_tables(registry: &Registry, cases: &[Case<'_>], limits: Limits, runs: &[Recorded]) -> Outcome<Report> {
@@ -141,6 +145,6 @@ fn all_tables(registry: &Registry, cases: &[Case<'_>], limits: Limits, runs: &[R
     };
     let mut report = of_page(cases, &runs.iter().collect::<Vec<_>>(), limits.bend, changes.as_deref())?;
     report.caution(changes.as_deref().and_then(refinement::caution).as_deref());
-    screen::note(&report);
+    registry.console.note(&report);
     Ok(report)
 }

@@ -15,8 +15,6 @@ use crane_page::tables::Report;
 use crate::{
     arguments::{Action, Analysis, Poses},
     envelope::{self, read_ranges},
-    files,
-    integration::batches,
     problem::{Outcome, Problem},
     quantity::{is_bare, number},
     selection::{Registry, set_parameters},
@@ -156,7 +154,7 @@ pub fn rows(asked: &PosesRequest<'_>, registry: &Registry, out: &mut dyn Write) 
     let axes = read_ranges(&poses.ranges, description)?;
     let point = envelope::point(poses.point.as_deref(), description)?;
     let subject = quantities::PosedCrane::new(crane.as_ref(), &axes, point, *wanted, registry);
-    let bar = batches(axes.poses());
+    let bar = registry.console.batches(axes.poses());
     let mut rows: Vec<PoseRow> = Vec::new();
     for pose in 0..axes.poses() {
         rows.push(subject.row(&settings(&axes, pose, description)?)?);
@@ -174,14 +172,14 @@ pub fn rows(asked: &PosesRequest<'_>, registry: &Registry, out: &mut dyn Write) 
     let grid = table(&subject, &rows);
     if let Some(file) = file {
         let (header, fields) = grid.fields();
-        files::write_fields(file, header, fields)?;
+        registry.console.write_fields(file, header, fields)?;
         let panels = figure(&subject, &rows);
         if !panels.is_empty() {
-            write_figure(&file.with_extension("svg"), &panels, 2)?;
+            write_figure(&registry.console, &file.with_extension("svg"), &panels, 2)?;
         }
     }
     report.grid(grid);
-    analysis.format.print(&report, out)?;
+    analysis.format.print(&report, &registry.console, out)?;
     if standing == 0 {
         return Err(Problem::failed("the crane has no stable equilibrium in any of the poses", "choose other ranges"));
     }

@@ -28,6 +28,7 @@ use crate::{
     arguments::{Format, Sensitivity},
     envelope, files,
     problem::{Outcome, Problem, nearest},
+    screen::Console,
     selection::{Registry, find_parameter, set_parameters, take_numbers},
     variants,
 };
@@ -180,7 +181,7 @@ pub fn sensitivity(options: &Sensitivity, registry: &Registry, out: &mut dyn Wri
         settings: sensitivity::Settings { frequencies: options.modes },
     };
     if options.run {
-        return run::sensitivity(options, &request, &crane, out);
+        return run::sensitivity(&registry.console, options, &request, &crane, out);
     }
     let loaded = if options.largest_load { Some(loaded(options, &crane)?) } else { None };
     let changes = changes(&request, registry.checked(&description.name)?, &crane, loaded.as_ref())?;
@@ -198,7 +199,7 @@ pub fn sensitivity(options: &Sensitivity, registry: &Registry, out: &mut dyn Wri
     for caution in cautions {
         report.caution(Some(caution));
     }
-    print(options, report, &changes, out)
+    print(&registry.console, options, report, &changes, out)
 }
 
 /// A report with what was asked for.
@@ -211,7 +212,13 @@ fn begin(options: &Sensitivity, description: &Description) -> Report {
 }
 
 /// Prints the changes, and writes them into a file if one is named.
-fn print(options: &Sensitivity, mut report: Report, changes: &Changes, out: &mut dyn Write) -> Outcome<()> {
+fn print(
+    console: &Console,
+    options: &Sensitivity,
+    mut report: Report,
+    changes: &Changes,
+    out: &mut dyn Write,
+) -> Outcome<()> {
     report.grid(tables::parameters(changes));
     report.excerpt(tables::outputs(changes), 0);
     report.shown(tables::matrix(changes, options.analysis.all));
@@ -219,18 +226,18 @@ fn print(options: &Sensitivity, mut report: Report, changes: &Changes, out: &mut
     report.data(tables::changes(changes));
     report.show_all(options.analysis.all);
     if let Some(file) = &options.file {
-        write(file, changes, options.change)?;
+        write(console, file, changes, options.change)?;
     }
-    options.analysis.format.print(&report, out)
+    options.analysis.format.print(&report, console, out)
 }
 
 /// Writes the changes as a table or as a chart.
-fn write(file: &Path, changes: &Changes, change: f64) -> Outcome<()> {
+fn write(console: &Console, file: &Path, changes: &Changes, change: f64) -> Outcome<()> {
     if files::ending(file, &["csv", "svg"])? == "svg" {
-        return files::write_text(file, &chart::chart(changes, change)?);
+        return console.write_text(file, &chart::chart(changes, change)?);
     }
     let (header, rows) = tables::rows(changes);
-    files::write_fields(file, header.into_iter(), rows.into_iter())
+    console.write_fields(file, header.into_iter(), rows.into_iter())
 }
 
 /// The largest load of the pose.

@@ -14,8 +14,8 @@ use crane_model::{
 use super::{Changes, Number, Request, begin, numbers, ordered, print, remarks};
 use crate::{
     arguments::{Sensitivity, Timing},
-    integration::progress,
     problem::{Outcome, Problem},
+    screen::Console,
 };
 
 /// A column of a run, and what is taken of it.
@@ -23,6 +23,7 @@ type Asked = (usize, Measure);
 
 /// Prints what moves the run of a crane from rest.
 pub fn sensitivity(
+    console: &Console,
     options: &Sensitivity,
     request: &Request<'_>,
     crane: &LiveCrane,
@@ -55,7 +56,7 @@ pub fn sensitivity(
     };
     let start = Start::new(crane)?;
     let settings = crane_model::dynamics::Settings { audit: false, ..timing.settings(crane, &start, METHOD)? };
-    let bar = progress(settings.duration);
+    let bar = console.progress(settings.duration);
     let proceed = &mut |t: f64| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length for the eye")]
         bar.set_position((1e3 * t) as u64);
@@ -99,7 +100,7 @@ pub fn sensitivity(
     for caution in &recorded.cautions {
         report.caution(Some(caution.as_str()));
     }
-    print(options, report, &changes, out)
+    print(console, options, report, &changes, out)
 }
 
 /// The columns that are asked for; peaks of the most important ones if none are, of all with `--all`.

@@ -21,10 +21,10 @@ use crane_page::tables::{Case, Report, VALUE, add_events, verdicts};
 
 use crate::{
     arguments::{Limits, Strength, Timing},
-    files,
-    integration::{progress, record_checked},
+    integration::record_checked,
     problem::{Outcome, Problem},
     refinement,
+    screen::Console,
     selection::Registry,
 };
 
@@ -45,7 +45,7 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     let mut report = Report::default();
     verdicts(&mut report, std::slice::from_ref(&case));
     if !case.equilibrium.is_stable() {
-        options.analysis.format.print(&report, out)?;
+        options.analysis.format.print(&report, &registry.console, out)?;
         return Ok(case.stable()?);
     }
     let rest = Instant::at_rest(crane.as_ref(), &q);
@@ -55,7 +55,7 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
     let changes =
         refinement::changes_of_stress(&case, &rest, registry).map(|changes| stresses::mesh(&mut report, changes));
     let timing = (&options.timing, options.analysis.crane.limits);
-    let history = if options.run { Some(along(timing, crane.as_ref(), &mut report)?) } else { None };
+    let history = if options.run { Some(along(&registry.console, timing, crane.as_ref(), &mut report)?) } else { None };
     for caution in cautions::of_pose(crane.as_ref(), &q, options.analysis.crane.limits.bend) {
         report.caution(Some(caution));
     }
@@ -78,18 +78,23 @@ pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) ->
         report.grid(tables::extremes_of_joints(crane.description(), &table));
         report.grid(tables::extremes_of_sections(crane.description(), &rest.x, &table));
         if let Some(file) = &options.results {
-            files::write_csv(file, &table)?;
+            registry.console.write_csv(file, &table)?;
         }
     }
     report.grid(tables::joints(crane.description(), &rest.wrenches));
     report.excerpt(tables::sections(crane.description(), &rest), 0);
     report.show_all(options.analysis.all);
-    options.analysis.format.print(&report, out)
+    options.analysis.format.print(&report, &registry.console, out)
 }
 
 /// Loads and stability along the manoeuvre, one entry per result.
-fn along(timing: (&Timing, Limits), crane: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
-    let history = history(timing, crane, report)?;
+fn along(
+    console: &Console,
+    timing: (&Timing, Limits),
+    crane: &dyn DynCrane,
+    report: &mut Report,
+) -> Outcome<Vec<Instant>> {
+    let history = history(console, timing, crane, report)?;
     let worst = least_margin(&history).ok_or_else(|| Problem::failed("the run has no results", ""))?;
     verdict(report, crane, worst, " of the run");
     stresses::verdict(report, crane.description(), &crane.section_moduli_at(), &history, " of the run");
@@ -100,21 +105,27 @@ fn along(timing: (&Timing, Limits), crane: &dyn DynCrane, report: &mut Report) -
 }
 
 /// Loads along the manoeuvre, one entry per result, with the cautions of the run.
-fn history(timing: (&Timing, Limits), crane: &dyn DynCrane, report: &mut Report) -> Outcome<Vec<Instant>> {
-    let (_, recorded) = record_manoeuvre(timing, crane, report)?;
+fn history(
+    console: &Console,
+    timing: (&Timing, Limits),
+    crane: &dyn DynCrane,
+    report: &mut Report,
+) -> Outcome<Vec<Instant>> {
+    let (_, recorded) = record_manoeuvre(console, timing, crane, report)?;
     Ok(instants(crane, recorded.table.rows.iter()))
 }
 
 /// Runs the manoeuvre from its start, and reports its cautions and events.
 pub fn record_manoeuvre(
+    console: &Console,
     (timing, limits): (&Timing, Limits),
     crane: &dyn DynCrane,
     report: &mut Report,
 ) -> Outcome<(Start, Recorded)> {
-    let start = timing.start(crane, false)?;
+    let start = timing.start(console, crane, false)?;
     let settings = timing.settings(crane, &start, Method::RECOMMENDED)?;
-    let bar = progress(settings.duration);
-    let recorded = record_checked(crane, &start, &settings, (!timing.no_verify, limits), &bar)?;
+    let bar = console.progress(settings.duration);
+    let recorded = record_checked(crane, &start, &settings, (!timing.no_verify, limits), (console, &bar))?;
     bar.finish_and_clear();
     for caution in &recorded.cautions {
         report.caution(Some(caution.as_str()));

@@ -1,7 +1,13 @@
 //! What the command says besides results: colours, JSON, severity, quiet.
 
-use std::{fs, process::Command};
+use std::{
+    ffi::OsString,
+    fs,
+    io::{Read, pipe},
+    process::{Command, Output},
+};
 
+use crane_cli::{Console, Registry};
 use serde_json::Value;
 
 use super::{crane, folder, json, refused, text};
@@ -42,6 +48,37 @@ fn scripts_fail_on_what_they_name() {
     assert_eq!(code(&[&heavy[..], &["--fail-on", "warning,caution"]].concat()), Some(3));
     let output = crane(&["check", WARNED, "--quiet"]);
     assert!(output.stderr.is_empty() && output.status.success());
+}
+
+/// Commands that one process runs share no manner, no warnings and no files that they have read.
+#[test]
+fn a_command_says_the_same_after_others_as_alone() {
+    let out = folder("one_process");
+    fs::create_dir_all(&out).expect("a folder");
+    let warned = out.join("warned.yaml");
+    let warned = warned.to_str().expect("a path");
+    let commands = [
+        (3, &["info", warned, "--format", "json", "--fail-on", "warning"][..]),
+        (0, &["info", warned]),
+        (0, &["info", "eight_link_rigid", "--fail-on", "warning", "--quiet"]),
+        (3, &["info", warned, "--fail-on", "warning"]),
+        // Over a file that the others have read.
+        (0, &["explain", "eight_link_rigid", "--svg", warned]),
+    ];
+    let copy = || fs::copy(WARNED, warned).expect("a spec");
+    copy();
+    let alone = commands.map(|(_, arguments)| crane(arguments));
+    copy();
+    for ((code, arguments), Output { status, stdout, stderr }) in commands.into_iter().zip(alone) {
+        let (mut messages, end) = pipe().expect("a pipe");
+        let words = [&["crane"], arguments].concat().iter().map(OsString::from).collect();
+        let (mut results, mut said) = (Vec::new(), Vec::new());
+        let registry = Registry::new(crane_specs::SPECS, Vec::new());
+        let ended = crane_cli::run(registry, Console::new(words, end, [false; 2]), &mut results);
+        messages.read_to_end(&mut said).expect("the command has ended");
+        assert_eq!((Some(ended.into()), Some(code)), (status.code(), status.code()), "{arguments:?}");
+        assert_eq!([results, said].map(|bytes| text(&bytes)), [stdout, stderr].map(|bytes| text(&bytes)));
+    }
 }
 
 #[test]

@@ -26,8 +26,8 @@ use std::{
 use indicatif::ProgressBar;
 
 use crane_cli::{
-    Registry, files,
-    toolbox::{Grid, Outcome, Problem, Report, styled},
+    Console, Registry, files,
+    toolbox::{Grid, Outcome, Problem, Report},
 };
 
 use crate::arguments::Stress;
@@ -111,18 +111,18 @@ pub fn stress(options: &Stress, registry: &Registry, out: &mut dyn Write) -> Out
             ));
         }
     }
-    let bar = styled(ProgressBar::new(cases.len() as u64));
+    let bar = registry.console.batches(cases.len());
     let verdicts = judge(cases, &bar);
     bar.finish_and_clear();
 
     files::folder(&options.out)?;
-    write_verdicts(&options.out, &verdicts)?;
+    write_verdicts(&registry.console, &options.out, &verdicts)?;
     let failed = verdicts.iter().filter(|verdict| !verdict.passed).count();
     let mut report = Report::default();
     report.fact("cases", verdicts.len(), "");
     report.fact("failed", failed, "");
     report.grid(grid(&verdicts));
-    options.format.print(&report, out)?;
+    options.format.print(&report, &registry.console, out)?;
     if failed == 0 {
         return Ok(());
     }
@@ -172,7 +172,7 @@ fn grid(verdicts: &[Verdict]) -> Grid {
 }
 
 /// Writes the results as CSV, and a Markdown page that counts them by subject; without times, so that both files are reproducible.
-fn write_verdicts(folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
+fn write_verdicts(console: &Console, folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
     let header = ["group", "case", "expected", "happened", "verdict"];
     let fields = |verdict: &Verdict| {
         let Verdict { group, name, expected, happened, passed, .. } = verdict;
@@ -184,7 +184,7 @@ fn write_verdicts(folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
             VERDICTS[usize::from(*passed)].to_owned(),
         ]
     };
-    files::write_fields(
+    console.write_fields(
         &folder.join("stress.csv"),
         header.map(str::to_owned).into_iter(),
         verdicts.iter().map(fields),
@@ -199,5 +199,5 @@ fn write_verdicts(folder: &Path, verdicts: &[Verdict]) -> Outcome<()> {
         let example = examples.min_by_key(String::len).unwrap_or_default();
         let _ = writeln!(page, "| {}{} | {count} | {passed} | {example} |", subject[..1].to_uppercase(), &subject[1..]);
     }
-    files::write_text(&folder.join("stress.md"), &page)
+    console.write_text(&folder.join("stress.md"), &page)
 }

@@ -16,7 +16,10 @@ use crane_model::{
     statics::{Equilibrium, Settings},
 };
 
-use crane_cli::toolbox::{Problem, Timing};
+use crane_cli::{
+    Console,
+    toolbox::{Problem, Timing},
+};
 
 /// A crane under test.
 pub struct Subject {
@@ -66,7 +69,7 @@ impl Subject {
     pub fn run(&self, timing: &Timing) -> Result<Recorded, String> {
         let crane = self.crane.as_ref();
         let message = |problem: Problem| problem.message();
-        let start = timing.start(crane, false).map_err(message)?;
+        let start = timing.start(&Console::default(), crane, false).map_err(message)?;
         let settings = timing.settings(crane, &start, Method::RECOMMENDED).map_err(message)?;
         let checks = (false, results::cautions::BEND);
         let recorded = runs::record_checked(crane, &start, &settings, checks, &mut |_| ControlFlow::Continue(()))

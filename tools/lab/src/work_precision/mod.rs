@@ -21,8 +21,8 @@ use crane_model::{
 };
 
 use crane_cli::{
-    Registry, files, refinement,
-    toolbox::{Grid, Library, Outcome, Problem, Report, file_list, load, progress, run_with, write_figure},
+    Console, Registry, files, refinement,
+    toolbox::{Grid, Library, Outcome, Problem, Report, file_list, load, run_with, write_figure},
 };
 
 use crate::arguments::WorkPrecision;
@@ -41,7 +41,7 @@ const LIBRARY: Library = Library {
 pub fn work_precision(options: &WorkPrecision, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let choice = &options.analysis.crane;
     let (crane, text) = if let Some(file) = choice.file() {
-        let (Chain { name, .. }, text) = load(file, options.analysis.crane.strict)?;
+        let (Chain { name, .. }, text) = load(&registry.console, file, options.analysis.crane.strict)?;
         (name, text)
     } else {
         let name = registry.crane(&choice.name)?.description().name.to_string();
@@ -58,7 +58,7 @@ pub fn work_precision(options: &WorkPrecision, registry: &Registry, out: &mut dy
     }
     if options.quick {
         let counts = if missing && flexible.is_empty() { &[] } else { counts };
-        let mut live = Registry::default();
+        let mut live = registry.empty();
         for (name, text) in [vec![(crane.clone(), text)], flexible].concat() {
             live.add(&name, text);
         }
@@ -71,7 +71,7 @@ pub fn work_precision(options: &WorkPrecision, registry: &Registry, out: &mut dy
         _ => format!("crane-{crane}-{hash}-{}", listed.join("-")),
     };
     let cranes = [vec![(crane, text)], flexible].concat();
-    run_with(&LIBRARY, &package, choice.name.as_ref(), &cranes)
+    run_with(&registry.console, &LIBRARY, &package, choice.name.as_ref(), &cranes)
 }
 
 /// Names and specs of a crane with other numbers of sections; empty for a crane without flexible links.
@@ -101,7 +101,7 @@ fn study(
     let description = crane.description();
     let start = start(crane)?;
     let base = base(options, description)?;
-    let bar = progress(0.0);
+    let bar = registry.console.progress(0.0);
     bar.set_message("reference");
     let poses = manoeuvre(crane, &start, POSES)?;
     let safe =
@@ -148,7 +148,7 @@ fn study(
         }
     }
     bar.finish_and_clear();
-    deliver(options, found, out)
+    deliver(options, found, &registry.console, out)
 }
 
 /// Where runs start: at rest in equilibrium, or at the guess if there is no drive to move the crane out of equilibrium.
@@ -170,27 +170,27 @@ fn base(options: &WorkPrecision, description: &Description) -> Outcome<Settings>
 }
 
 /// Writes tables and figures, and prints the results.
-fn deliver(options: &WorkPrecision, found: Found<'_>, out: &mut dyn Write) -> Outcome<()> {
+fn deliver(options: &WorkPrecision, found: Found<'_>, console: &Console, out: &mut dyn Write) -> Outcome<()> {
     let name = &found.description.name;
     files::folder(&options.out)?;
     let mut written = Vec::new();
     for grid in &found.grids {
         let file = format!("{name}_{}.csv", grid.key());
         let (headers, rows) = grid.fields();
-        files::write_fields(&options.out.join(&file), headers, rows)?;
+        console.write_fields(&options.out.join(&file), headers, rows)?;
         written.push(file);
     }
     for (what, panels) in &found.figures {
         let file = format!("{name}_{what}.svg");
-        write_figure(&options.out.join(&file), panels, 2)?;
+        write_figure(console, &options.out.join(&file), panels, 2)?;
         written.push(file);
     }
     if let Some(file) = &options.page {
-        page::write_page(file, &found)?;
+        page::write_page(console, file, &found)?;
         written.push(file.display().to_string());
     }
     let mut report = found.facts;
     found.grids.into_iter().for_each(|grid| report.grid(grid));
     report.grid(file_list(&options.out, &written));
-    options.analysis.format.print(&report, out)
+    options.analysis.format.print(&report, console, out)
 }

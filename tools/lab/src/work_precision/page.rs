@@ -3,7 +3,7 @@
 use std::{fmt::Write as _, fs, path::Path};
 
 use crane_cli::{
-    files,
+    Console, files,
     toolbox::{Outcome, write_figure},
 };
 
@@ -40,7 +40,7 @@ const TEXTS: [(&str, &str, &str); 5] = [
 ];
 
 /// Writes the page, and its figures into the folder `images` next to it.
-pub fn write_page(file: &Path, found: &Found<'_>) -> Outcome<()> {
+pub fn write_page(console: &Console, file: &Path, found: &Found<'_>) -> Outcome<()> {
     let name = &found.description.name;
     let mut text = format!(
         "# Error against run time\n\nThis page shows the run time needed for a given error on the crane `{name}`, depending on the \
@@ -61,7 +61,7 @@ pub fn write_page(file: &Path, found: &Found<'_>) -> Outcome<()> {
         for (what, alt) in pictures(key) {
             if let Some((_, panels)) = found.figures.iter().find(|(name, _)| name == what) {
                 let image = format!("error_{what}.svg");
-                write_figure(&folder.join(&image), panels, 2)?;
+                write_figure(console, &folder.join(&image), panels, 2)?;
                 let _ = write!(text, "![{alt}](images/{image})\n\n");
             }
         }
@@ -70,7 +70,7 @@ pub fn write_page(file: &Path, found: &Found<'_>) -> Outcome<()> {
     text += "\n## The formulation\n\nA and e by the triple sum of [Urbaś 2016, Eq. (5)] as printed, A and e by composite bodies and Newton's \
              and Euler's equations, and accelerations in O(n) without A differ only in run time, not in error: \
              [performance.md](performance.md) compares their times. All methods here use the accelerations in O(n).\n";
-    files::write_text(file, &text)
+    console.write_text(file, &text)
 }
 
 /// Figures of a section of the page, and what they show.
