@@ -50,7 +50,7 @@ fn scripts_fail_on_what_they_name() {
     assert!(output.stderr.is_empty() && output.status.success());
 }
 
-/// Commands that one process runs share no manner, no warnings and no files that they have read.
+/// Commands that one process runs share no manner, no warnings, no cautions and no files that they have read.
 #[test]
 fn a_command_says_the_same_after_others_as_alone() {
     let out = folder("one_process");
@@ -60,8 +60,8 @@ fn a_command_says_the_same_after_others_as_alone() {
     let commands = [
         (3, &["info", warned, "--format", "json", "--fail-on", "warning"][..]),
         (0, &["info", warned]),
-        (0, &["info", "eight_link_rigid", "--fail-on", "warning", "--quiet"]),
-        (3, &["info", warned, "--fail-on", "warning"]),
+        (3, &["statics", warned, "--fail-on", "caution"]),
+        (0, &["info", "eight_link_rigid", "--fail-on", "warning,caution"]),
         // Over a file that the others have read.
         (0, &["explain", "eight_link_rigid", "--svg", warned]),
     ];
