@@ -118,7 +118,7 @@ impl Console {
     /// A CSV file with a header.
     ///
     /// # Errors
-    /// Those of [`read_file`].
+    /// Those of [`Self::read_file`].
     pub fn csv(&self, path: &Path) -> Result<csv::Reader<io::Cursor<Vec<u8>>>, csv::Error> {
         Ok(csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(io::Cursor::new(self.read_file(path)?)))
     }
