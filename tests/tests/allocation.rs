@@ -40,7 +40,7 @@ macro_rules! every_crane {
             #[test]
             fn $name() {
                 let mut crane = cranes::$name::Crane::default();
-                let mut lists = Lists::<{ cranes::$name::N }>::of(&crane);
+                let mut lists = Lists::<{ cranes::$name::N }>::new(&crane);
                 let guess = SVector::from_vec(Problem::new(&crane).guess());
                 let calls = allocation_counter::measure(|| every_function(&mut crane, (&guess, &mut lists)));
                 assert_eq!(calls.count_total, 0);

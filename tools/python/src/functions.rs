@@ -39,7 +39,7 @@ macro_rules! method {
                 invalid: &str,
             ) -> Array<'py> {
                 #[allow(clippy::needless_update, reason = "a row with all arguments leaves none to the default")]
-                let state = State { $($required: Some($required),)* $($optional,)? ..State::default() };
+                let state = StateArguments { $($required: Some($required),)* $($optional,)? ..StateArguments::default() };
                 self.function(py, FunctionId::$id, state, invalid)
             }
         }
