@@ -9,7 +9,7 @@ const BEGIN: &str = "    # The methods below follow from the table of quantities
 
 #[test]
 fn the_stub_lists_the_methods_of_the_table() {
-    let path = workspace::root().join("tools/python/crane/_native.pyi");
+    let path = workspace::root().join("apps/python/crane/_native.pyi");
     let text = std::fs::read_to_string(&path).expect("the stub is there");
     let (by_hand, listed) = text.split_once(BEGIN).expect("the stub marks where the table begins");
     let methods: String = FunctionId::ALL.iter().filter_map(|id| method(*id)).collect();

@@ -26,7 +26,7 @@ pub fn check_meshes(tree: &Tree) -> Option<Vec<String>> {
     if beams == 0 || tree["links"].as_array()?.iter().any(|link| link["beam"]["section_joint"] == "paper") {
         return None;
     }
-    // Pads are at any place within a section. There the moment has a peak, which a beam spreads over a section. `tools/live/tests/cranes/sliding_beams.rs` has
+    // Pads are at any place within a section. There the moment has a peak, which a beam spreads over a section. `engine/live/tests/cranes/sliding_beams.rs` has
     // the order of the tip, and its twist.
     if tree["links"].as_array()?.iter().any(|link| link["beam"]["slides_in"].is_object()) {
         return None;

@@ -218,7 +218,7 @@ fn numbers(schema: &Value, path: &str, found: &mut BTreeSet<String>) {
 
 #[test]
 fn everything_that_is_printed_is_compared() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tools/cli/schemas");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../apps/cli/schemas");
     let mut printed = BTreeSet::new();
     for file in fs::read_dir(folder).expect("a folder").map(|file| file.expect("a file").path()) {
         let command = file.file_stem().and_then(|stem| stem.to_str()).expect("a name");

@@ -15,7 +15,7 @@ use std::process::{Command, ExitCode};
 use std::{env, fs};
 
 /// Crates whose files may be changed: they are linked into the tests that run. Roots of generated code and of build scripts are not.
-const CRATES: [&str; 4] = ["codegen/src", "crane-model/src", "tools/live/src", "tools/page/src"];
+const CRATES: [&str; 4] = ["codegen/src", "crane-model/src", "engine/live/src", "apps/page/src"];
 /// Changes that change nothing, with the reasons.
 const EQUIVALENT: &str = include_str!("../equivalent.txt");
 

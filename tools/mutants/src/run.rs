@@ -150,8 +150,8 @@ impl Test {
         let of = |folder: &str| self.package == Path::new(folder);
         if change.file.starts_with("codegen") {
             true
-        } else if change.file.starts_with("tools/page") {
-            of("tools/page") || of("tests/combinations")
+        } else if change.file.starts_with("apps/page") {
+            of("apps/page") || of("tests/combinations")
         } else {
             !of("codegen") && !of("tests")
         }

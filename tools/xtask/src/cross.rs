@@ -68,7 +68,7 @@ fn build_wheel(triple: &str) -> Result<(), String> {
     let mut maturin = CROSS.command("maturin");
     maturin
         .args(["build", "--release", "--zig", "--target", triple, "--compatibility", "manylinux2014", "--quiet"])
-        .args(["--manifest-path", "tools/python/Cargo.toml", "--out"])
+        .args(["--manifest-path", "apps/python/Cargo.toml", "--out"])
         .arg(published())
         .env("CARGO_TARGET_DIR", workspace::target())
         .current_dir(workspace::root());

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::workspace;
 
 /// The modules of the Python package.
-const PYTHON: &str = "tools/python/crane";
+const PYTHON: &str = "apps/python/crane";
 /// Maximum size of a permitted cycle of files: a file and its helper.
 const HELPED: usize = 2;
 

@@ -1,4 +1,4 @@
-//! The page as an instrument: the engine for WebAssembly (`tools/instrument`), built into one HTML file by `tools/report/instrument`.
+//! The page as an instrument: the engine for WebAssembly (`apps/instrument`), built into one HTML file by `apps/report/instrument`.
 
 use std::path::PathBuf;
 use std::process::Command;

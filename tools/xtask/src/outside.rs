@@ -6,12 +6,12 @@ use crate::{step, workspace};
 
 /// Runs the tests of functional mock-up units.
 pub fn check_units() -> Result<(), String> {
-    run_python_tests("tools/fmu/tests", &[])
+    run_python_tests("apps/fmu/tests", &[])
 }
 
 /// Runs the tests of what the command prints as JSON.
 pub fn check_output() -> Result<(), String> {
-    run_python_tests("tools/cli/tests/output", &[])
+    run_python_tests("apps/cli/tests/output", &[])
 }
 
 /// Compares what random cranes compute in the Python package with what the command writes, and with functional mock-up units and C that

@@ -1,4 +1,4 @@
-//! The Python package `crane`, in `tools/python`: installed as a user does it, and tested.
+//! The Python package `crane`, in `apps/python`: installed as a user does it, and tested.
 
 use std::fs;
 use std::io;
@@ -8,7 +8,7 @@ use std::process::Command;
 use crate::python::CHECKS;
 use crate::{step, workspace};
 
-const FOLDER: &str = "tools/python";
+const FOLDER: &str = "apps/python";
 
 /// Builds the wheel of the package into a folder, in place of others there, and returns its path.
 pub fn build_wheel(folder: &Path) -> Result<PathBuf, String> {

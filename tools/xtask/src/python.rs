@@ -19,10 +19,10 @@ pub const CHECKS: Environment = Environment {
         "tools/casadi/requirements.txt",
         "tools/peers/requirements.txt",
         "tools/peers/requirements-performance.txt",
-        "tools/python/requirements-build.txt",
-        "tools/python/requirements-test.txt",
-        "tools/fmu/requirements-test.txt",
-        "tools/cli/tests/output/requirements-test.txt",
+        "apps/python/requirements-build.txt",
+        "apps/python/requirements-test.txt",
+        "apps/fmu/requirements-test.txt",
+        "apps/cli/tests/output/requirements-test.txt",
     ],
 };
 
@@ -32,7 +32,7 @@ pub const LINTS: Environment = Environment { folder: ".venv-lints", requirements
 /// For programs of other processors than that of this machine.
 pub const CROSS: Environment = Environment {
     folder: ".venv-cross",
-    requirements: &["tools/python/requirements-build.txt", "tools/python/requirements-cross.txt"],
+    requirements: &["apps/python/requirements-build.txt", "apps/python/requirements-cross.txt"],
 };
 
 impl Environment {

@@ -1,4 +1,4 @@
-//! The report page, in `tools/report`: whether the command includes the newest, and how a browser shows it.
+//! The report page, in `apps/report`: whether the command includes the newest, and how a browser shows it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::process::Command;
 use crate::python::CHECKS;
 use crate::{step, workspace};
 
-const FOLDER: &str = "tools/report";
+const FOLDER: &str = "apps/report";
 /// Pages for the browser besides that of the default run: no elements and no supports; nothing that moves; more samples than a
 /// page holds; cylinders with valves, feet that lift, friction.
 const OTHERS: [(&str, &[&str]); 4] = [

@@ -9,7 +9,7 @@ use std::{fs, io};
 use crate::{commands, step, workspace};
 
 /// The manifest of programs that the command keeps, whose builds of dependencies are those of the workspace.
-const KEPT_PROGRAM: &str = "tools/cli/src/compiled/Cargo.toml.template";
+const KEPT_PROGRAM: &str = "apps/cli/src/compiled/Cargo.toml.template";
 
 /// The profile of programs that the command keeps: that of the workspace, as far as they depend on it.
 pub fn profile_of_kept_programs() -> Result<String, String> {
