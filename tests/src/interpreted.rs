@@ -2,7 +2,7 @@
 
 use crane_codegen::chain::{Analyses, Chain, Cylinder};
 use crane_codegen::mechanics;
-use crane_codegen::program::{Argument, FunctionId, Inputs, Program, Shape};
+use crane_codegen::program::{Argument, FunctionId, Inputs, Layout, Program};
 use crane_codegen::symbolic::Scalar;
 use crane_model::nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -64,9 +64,9 @@ impl Interpreted {
                 let given = inputs.get(Argument::DrivePositions);
                 let positions = if given.is_empty() { self.drive_positions(inputs) } else { given };
                 let inputs = inputs.clone().with(Argument::DrivePositions, positions);
-                expand(&function.shape, self.program.evaluate(function, &inputs))
+                function.shape.fill(Layout::Rows, &self.program.evaluate(function, &inputs))
             }
-            Some(function) => expand(&function.shape, self.program.evaluate(function, inputs)),
+            Some(function) => function.shape.fill(Layout::Rows, &self.program.evaluate(function, inputs)),
             None => vec![S::from_f64(0.0); otherwise],
         }
     }
@@ -152,46 +152,4 @@ impl Interpreted {
         let reduced = lower.solve_lower_triangular(&half.transpose()).expect("L is regular");
         SymmetricEigen::new(reduced).eigenvalues.max().sqrt().recip()
     }
-}
-
-/// Slots of a result as full arrays: symmetric matrices with both halves, transformations with their last row.
-fn expand<S: Scalar>(shape: &Shape, slots: Vec<S>) -> Vec<S> {
-    match shape {
-        Shape::Symmetric(n) | Shape::Tangent { n, .. } | Shape::Columns { n, bias: false, .. } => symmetric(*n, &slots),
-        Shape::Base => symmetric(6, &slots),
-        Shape::Transforms { corner, .. } => homogeneous(&slots, *corner),
-        Shape::TransformFactors { .. } => homogeneous(&slots, 0),
-        Shape::Record(_, fields) => {
-            let mut rest = slots.as_slice();
-            let mut out = Vec::new();
-            for (_, shape) in fields {
-                let (first, others) = rest.split_at(shape.len());
-                out.extend(expand(shape, first.to_vec()));
-                rest = others;
-            }
-            out
-        }
-        _ => slots,
-    }
-}
-
-fn symmetric<S: Scalar>(n: usize, upper: &[S]) -> Vec<S> {
-    let mut full = vec![S::from_f64(0.0); n * n];
-    let mut slots = upper.iter();
-    for row in 0..n {
-        for column in row..n {
-            if let Some(entry) = slots.next() {
-                full[row * n + column] = entry.clone();
-                full[column * n + row] = entry.clone();
-            }
-        }
-    }
-    full
-}
-
-fn homogeneous<S: Scalar>(rows: &[S], corner: u8) -> Vec<S> {
-    let zero = || S::from_f64(0.0);
-    rows.chunks(12)
-        .flat_map(|matrix| matrix.iter().cloned().chain([zero(), zero(), zero(), S::from_f64(f64::from(corner))]))
-        .collect()
 }

@@ -35,7 +35,6 @@ use number::Number;
 
 pub(crate) use labels::Labels;
 pub(crate) use names::Names;
-pub(crate) use shape::{field_of, row_of_triangle};
 
 /// The module of a crane.
 #[derive(Clone, Debug)]

@@ -7,9 +7,9 @@ use super::Precision;
 use super::arithmetic::Expression;
 use super::words::{comment, field, not_for_variables};
 use crate::chain::{Chain, Input};
-use crate::emit::{Labels, Names, field_of, row_of_triangle};
+use crate::emit::{Labels, Names};
 use crate::lower::{LoweredFunction, LoweredProgram, Statement};
-use crate::program::{Argument, Function, Product, Shape};
+use crate::program::{Argument, Function, Layout, Product, Shape};
 use crate::symbolic::{ExprId, Op};
 
 /// Writes functions.
@@ -28,7 +28,8 @@ type Used = BTreeSet<Argument>;
 impl CWriter<'_> {
     /// The definition of a function, after those of its pieces.
     pub fn function(&self, code: &LoweredFunction) -> String {
-        let (signature, numbers) = (self.signature(code.function), numbers(&code.function.shape));
+        let (signature, numbers) =
+            (self.signature(code.function), code.function.shape.entries(Layout::UpperRows).len());
         let number = self.precision.name();
         let scalar = code.function.shape == Shape::Scalar;
         let blank = if scalar {
@@ -90,7 +91,7 @@ impl CWriter<'_> {
         if is_of_variables(function) {
             return format!("{} *out", self.name("variables"));
         }
-        format!("{} out[{}]", self.precision.name(), numbers(&function.shape))
+        format!("{} out[{}]", self.precision.name(), function.shape.entries(Layout::UpperRows).len())
     }
 
     /// Names and declarations of the arguments of a function.
@@ -139,8 +140,16 @@ impl CWriter<'_> {
     /// Statements of a piece, and what they read.
     fn piece(&self, code: &LoweredFunction, piece: &[Statement]) -> (String, Used) {
         let names = Names::new(&self.lowered.program, 0).avoiding(&not_for_variables());
-        let mut body =
-            Body { writer: self, code, names, fields: self.fields(), used: Used::new(), text: String::new() };
+        let positions = code.function.shape.positions(Layout::UpperRows);
+        let mut body = Body {
+            writer: self,
+            code,
+            names,
+            positions,
+            fields: self.fields(),
+            used: Used::new(),
+            text: String::new(),
+        };
         for statement in piece {
             body.statement(statement);
         }
@@ -209,6 +218,8 @@ struct Body<'a> {
     writer: &'a CWriter<'a>,
     code: &'a LoweredFunction<'a>,
     names: Names<'a>,
+    /// Where the slots are in the result.
+    positions: Vec<Vec<usize>>,
     /// Of the [`variables`](super::variables).
     fields: Vec<String>,
     used: Used,
@@ -264,7 +275,7 @@ impl Body<'_> {
             }
             &Statement::Output { slot, value } => {
                 let value = self.expression(value);
-                let places = places(&self.code.function.shape, slot);
+                let places = &self.positions[slot];
                 let out = |place: &usize| match self.fields.get(*place) {
                     Some(field) if is_of_variables(self.code.function) => format!("out->{field} = "),
                     _ => format!("out[{place}] = "),
@@ -388,39 +399,5 @@ fn argument_name(function: &Function, argument: Argument) -> &'static str {
         Argument::Parameters => "c",
         Argument::Inputs => "u",
         Argument::LoopVarying | Argument::LiveOut => unreachable!("chains without loops have none"),
-    }
-}
-
-/// The number of entries of a result.
-pub fn numbers(shape: &Shape) -> usize {
-    match shape {
-        Shape::Symmetric(n) => n * n,
-        Shape::Base => 36,
-        Shape::MassAndBias(n) => n * n + n,
-        Shape::Record(_, fields) => fields.iter().map(|(_, shape)| numbers(shape)).sum(),
-        _ => shape.len(),
-    }
-}
-
-/// The positions of a slot in the result: one, or two in a symmetric matrix.
-fn places(shape: &Shape, slot: usize) -> Vec<usize> {
-    match shape {
-        Shape::Symmetric(n) => {
-            let (row, column) = row_of_triangle(*n, slot);
-            let mut places = vec![row * n + column, column * n + row];
-            places.dedup();
-            places
-        }
-        Shape::Base => places(&Shape::Symmetric(6), slot),
-        Shape::MassAndBias(n) => match slot.checked_sub(n * (n + 1) / 2) {
-            Some(row) => vec![n * n + row],
-            None => places(&Shape::Symmetric(*n), slot),
-        },
-        Shape::Record(_, fields) => {
-            let (index, rest) = field_of(fields, slot);
-            let before: usize = fields[..index].iter().map(|(_, shape)| numbers(shape)).sum();
-            places(&fields[index].1, rest).into_iter().map(|position| before + position).collect()
-        }
-        _ => vec![slot],
     }
 }

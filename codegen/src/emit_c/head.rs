@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 use super::Precision;
-use super::function::{CWriter, numbers};
+use super::function::CWriter;
 use super::words::{comment, field};
 use crate::chain::{Chain, CoordinateKind, Input};
-use crate::program::{Argument, Count, Extent, Function, FunctionId, Product, Shape, Struct};
+use crate::program::{Argument, Count, Extent, Function, FunctionId, Layout, Product, Shape, Struct};
 
 /// The beginning of the source.
 pub fn source(chain: &Chain, header: &str) -> String {
@@ -264,7 +264,7 @@ fn result(chain: &Chain, Function { id, product, shape, .. }: &Function) -> Stri
         }
         Shape::Factors(count) => format!("out: {count} numbers for solve"),
         Shape::Record(_, fields) => {
-            let fields = fields.iter().map(|(name, shape)| format!("{name} ({} numbers)", numbers(shape)));
+            let fields = fields.iter().map(|(name, shape)| format!("{name} ({} numbers)", shape.entries(Layout::UpperRows).len()));
             format!("out: {}, one after the other", fields.collect::<Vec<_>>().join(", "))
         }
         Shape::Columns { .. } | Shape::Tangent { .. } | Shape::TransformFactors { .. } => "out: factors".to_owned(),

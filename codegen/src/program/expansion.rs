@@ -22,6 +22,19 @@ impl Shape {
         }
     }
 
+    /// The shape of expanded slots.
+    #[must_use]
+    pub fn expanded(&self) -> Shape {
+        match self {
+            Shape::TransformFactors { degrees, .. } => {
+                Shape::Transforms { counts: degrees.iter().map(|n| n * (n + 1) / 2).collect(), corner: 0 }
+            }
+            Shape::Columns { n, bias: true, .. } => Shape::MassAndBias(*n),
+            Shape::Columns { n, bias: false, .. } | Shape::Tangent { n, .. } => Shape::Symmetric(*n),
+            _ => self.clone(),
+        }
+    }
+
     /// Operations of [`Shape::expand`]; translations cost none.
     #[must_use]
     pub fn expansion_count(&self) -> OperationCount {

@@ -3,6 +3,7 @@
 mod count;
 mod expansion;
 mod interpret;
+mod layout;
 mod longest_chain;
 mod product;
 mod shape;
@@ -14,6 +15,7 @@ use crate::symbolic::{ExprId, Graph, Nodes, Op, SweepTrace, SymbolId};
 pub use count::OperationCount;
 pub use crane_quantities::{Argument, Count, Extent, FunctionId, Item, Part};
 pub use interpret::Inputs;
+pub use layout::{Entry, Layout};
 pub use longest_chain::Latencies;
 pub use product::{PULLED_BACK, Product, has_products};
 pub use shape::{ConcurrentAxes, Shape, Struct};

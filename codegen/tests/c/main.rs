@@ -12,7 +12,7 @@ use crane_codegen::chain::{Analyses, Chain, Input, Loops};
 use crane_codegen::compile::{generate_c, load};
 use crane_codegen::emit_c::{CCode, Precision};
 use crane_codegen::mechanics::derive;
-use crane_codegen::program::{Argument, Function, Inputs, Program, Shape};
+use crane_codegen::program::{Argument, Function, Inputs, Layout, Program, Shape};
 use crane_codegen::{SourceFile, build};
 
 use compiler::run_program;
@@ -114,40 +114,7 @@ fn expected(
         |inputs, (argument, values)| inputs.with(argument, values),
     );
     let slots = program.evaluate(function, &inputs);
-    in_full(&function.shape, &slots)
-}
-
-/// Symmetric matrices from their upper triangles.
-fn in_full(shape: &Shape, slots: &[f64]) -> Vec<f64> {
-    let square = |n: usize, slots: &[f64]| {
-        let mut matrix = vec![0.0; n * n];
-        let mut slots = slots.iter();
-        for row in 0..n {
-            for column in row..n {
-                let value = *slots.next().unwrap();
-                (matrix[row * n + column], matrix[column * n + row]) = (value, value);
-            }
-        }
-        matrix
-    };
-    match shape {
-        Shape::Symmetric(n) => square(*n, slots),
-        Shape::Base => square(6, slots),
-        Shape::MassAndBias(n) => {
-            let (mass, bias) = slots.split_at(n * (n + 1) / 2);
-            [square(*n, mass), bias.to_vec()].concat()
-        }
-        Shape::Record(_, fields) => {
-            let mut rest = slots;
-            let parts = fields.iter().map(|(_, shape)| {
-                let (first, others) = rest.split_at(shape.len());
-                rest = others;
-                in_full(shape, first)
-            });
-            parts.collect::<Vec<_>>().concat()
-        }
-        _ => slots.to_vec(),
-    }
+    function.shape.fill(Layout::UpperRows, &slots)
 }
 
 /// The beginning of a program that calls functions: parameters and inputs.
@@ -201,7 +168,7 @@ fn caller(code: &CCode, chain: &Chain, functions: &[&Function], number: &str, in
             let _ = writeln!(text, "        const {number} {variable}[] = {{{}}};", list.join(", "));
             given.push(if *argument == Argument::Time { format!("{variable}[0]") } else { variable });
         }
-        let count = in_full(&function.shape, &vec![0.0; function.shape.len()]).len();
+        let count = function.shape.entries(Layout::UpperRows).len();
         let call = format!("{name}_{}", function.id.name());
         if function.shape == Shape::Scalar {
             let _ = writeln!(text, "        const {number} out[] = {{{call}({})}};", given.join(", "));

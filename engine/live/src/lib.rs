@@ -31,7 +31,6 @@ mod dual;
 mod expansion;
 pub mod imported;
 mod inputs;
-pub mod layout;
 mod library;
 pub mod machine;
 mod motion;

@@ -45,7 +45,7 @@ impl Routine {
         &self.shape
     }
 
-    /// The number of its results, as [`layout`](crate::layout::layout) has them.
+    /// The number of its results, as [`Shape::entries`](crane_codegen::program::Shape::entries) has them.
     #[must_use]
     pub fn results(&self) -> usize {
         self.code.results

@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
+use crane_codegen::program::Entry;
 use crane_codegen::symbolic::{ExprId, Op};
 
 use super::Graph;
 use super::select::{NOTHING, Operand, Recipe, Selection, Signed};
 use crate::bytecode::{Fixed, Inputs, Kind};
-use crate::layout::Entry;
 
 /// Number of results copied at a time: a copy ends a run, but a waiting result keeps a register.
 const BATCH: usize = 256;

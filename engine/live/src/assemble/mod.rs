@@ -11,11 +11,10 @@ mod registers;
 mod select;
 
 use crane_codegen::lower::{Constants, fuse};
-use crane_codegen::program::{Function, Program};
+use crane_codegen::program::{Entry, Function, Layout, Program};
 use crane_codegen::symbolic::ExprId;
 
 use crate::bytecode::Code;
-use crate::layout::layout;
 use line::{AssembledLine, Order};
 use select::Selection;
 
@@ -31,7 +30,7 @@ pub struct TooLarge {
 pub fn assemble(program: &Program, constants: &Constants, function: &Function) -> Code {
     let fused = fuse(program, constants, &function.outputs);
     let graph = Graph { program, constants: Some(constants), fused };
-    let entries = layout(&function.shape);
+    let entries = function.shape.entries(Layout::Columns);
     let selection = Selection::new(&graph, &function.outputs);
     let line = |order| AssembledLine::new(&graph, &selection, &function.outputs, &entries, order);
     let code = registers::assign(&line(Order::Derivation));
@@ -43,7 +42,7 @@ pub fn assemble(program: &Program, constants: &Constants, function: &Function) -
 pub fn assemble_constants(program: &Program, constants: &Constants) -> Code {
     let graph = Graph { program, constants: None, fused: vec![None; program.operations.len()] };
     let outputs = &constants.stored;
-    let entries: Vec<_> = (0..outputs.len()).map(crate::layout::Entry::Slot).collect();
+    let entries: Vec<_> = (0..outputs.len()).map(Entry::Slot).collect();
     let selection = Selection::new(&graph, outputs);
     registers::assign(&AssembledLine::new(&graph, &selection, outputs, &entries, Order::Derivation))
 }
@@ -122,7 +121,7 @@ mod tests {
         let fused = fuse(&alone, &constants, &function.outputs);
         let graph = Graph { program: &alone, constants: Some(&constants), fused };
         let selection = Selection::new(&graph, &function.outputs);
-        let entries = layout(&function.shape);
+        let entries = function.shape.entries(Layout::Columns);
         let [derived, by_result] = [Order::Derivation, Order::Results].map(|order| {
             let line = AssembledLine::new(&graph, &selection, &function.outputs, &entries, order);
             let arguments = Arguments { q: &q, v: &q, a: &q, positions: &q, ..Arguments::none() };

@@ -2,11 +2,10 @@
 
 use crane_codegen::build;
 use crane_codegen::chain::{Analyses, Chain};
-use crane_codegen::program::{Argument, Function, FunctionId, Inputs, Program, Shape, Symbol};
+use crane_codegen::program::{Argument, Entry, Function, FunctionId, Inputs, Layout, Program, Shape, Symbol};
 use crane_codegen::symbolic::{Expr, Graph, SweepTrace, SymbolId};
 use crane_codegen::{compile, mechanics};
 use crane_live::Routine;
-use crane_live::layout::{Entry, layout};
 use crane_live::machine::Arguments;
 use crane_model::rt::lanes::f64x8;
 
@@ -88,7 +87,7 @@ impl State {
 /// The slots of a result in the order of its layout.
 fn slots(shape: &Shape, result: &[f64]) -> Vec<f64> {
     let mut slots = vec![f64::NAN; shape.len()];
-    for (entry, number) in layout(shape).iter().zip(result) {
+    for (entry, number) in shape.entries(Layout::Columns).iter().zip(result) {
         match entry {
             Entry::Slot(slot) => slots[*slot] = *number,
             Entry::Number(expected) => assert_eq!(number, expected),
