@@ -209,7 +209,8 @@ pub trait CraneModel<const N: usize>: Clone + Send + Sync + 'static {
     /// `−A⁻¹ ∂r/∂q, −A⁻¹ ∂r/∂v, A⁻¹`, at a = q̈, A⁻¹ by articulated bodies
     fn forward_dynamics_derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>, out: &mut [[f64; N]]) {
         let a = self.forward_dynamics(t, q, v);
-        let (mut of_residual, mut of_mass) = ([[0.0; N]; Count::RESIDUAL_FACTORS], [[0.0; N]; Count::MASS_FACTORS]);
+        let mut of_residual = [[0.0; N]; Count::RESIDUAL_FACTORS];
+        let mut of_mass = [[0.0; N]; Count::MASS_FACTORS];
         self.residual_factors(q, v, &a, &mut of_residual);
         self.mass_factors(q, &mut of_mass);
         let mut of_forces = [[[0.0; N]; N]; 2];
@@ -217,7 +218,7 @@ pub trait CraneModel<const N: usize>: Clone + Send + Sync + 'static {
         self.force_derivatives(t, q, v, forces);
         let factors = [of_residual.as_flattened(), of_mass.as_flattened()];
         with_workspace(self, |links, workspace| {
-            let forces = (forces.as_flattened(), 0..2 * N * N);
+            let forces = (forces.as_flattened(), derivatives::places(forces.as_flattened()));
             derivatives::forward_dynamics_derivatives(links, workspace, factors, forces, out.as_flattened_mut());
         });
     }
@@ -251,14 +252,18 @@ impl<const N: usize, C: CraneModel<N>> LaneDynamics<N> for OneByOne<C> {
 /// Calls `compute` with the coordinates of a crane and a workspace for derivatives.
 fn with_workspace<const N: usize>(
     crane: &impl CraneModel<N>,
-    compute: impl FnOnce(&[Link], Workspace<'_, EightColumns>),
+    compute: impl FnOnce(&[Link; N], Workspace<'_, EightColumns>),
 ) {
     const UNITS: usize = units::<EightColumns>(usize::MAX);
     let mut links = [Link::default(); N];
     fill_links(crane.description(), crane.parents(), &mut links);
     let zero = EightColumns::zero();
-    let (mut joints, mut changes) = ([Joint::zero(); N], [Changes::zero(); N]);
-    let (mut rows, mut swept, mut now) = ([[0.0; 16]; N], [[[zero; 3]; UNITS]; N], [[zero; 9]; UNITS]);
+    // One by one: out of a tuple they would be copied.
+    let mut joints = [Joint::zero(); N];
+    let mut changes = [Changes::zero(); N];
+    let mut rows = [[0.0; 16]; N];
+    let mut swept = [[[zero; 3]; UNITS]; N];
+    let mut now = [[zero; 9]; UNITS];
     let work = |reached: &mut [_], paths: &mut [_]| {
         let (joints, rows, changes, swept) = (&mut joints, &mut rows, &mut changes, swept.as_flattened_mut());
         let states = States { now: &mut now, reached };

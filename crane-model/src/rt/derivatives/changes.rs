@@ -34,9 +34,9 @@ impl<C: Columns> Changes<C> {
     pub(super) fn give_way(&mut self, carried: &[Carried<C>]) {
         /// Places of the accelerations and rates, in the order of the columns.
         const PLACES: [usize; COLUMNS] = [9, 10, 11, 6, 7, 8, 12, 13, 14];
-        let mut wrenches = [[C::Number::constant(0.0); 8]; 2];
+        let mut wrenches = [[C::zero(); 6]; 2];
         for which in 0..2 {
-            let (of, mut units) = (&self.of[which], [C::zero(); 6]);
+            let (of, units) = (&self.of[which], &mut wrenches[which]);
             for state in 0..C::STATES {
                 let number = |first: usize| three!(|k| C::lane(&of[first + k], state));
                 let m = cross_subtract(three!(|k| C::lane(&self.point[k], state)), number(3), number(0));
@@ -45,40 +45,19 @@ impl<C: Columns> Changes<C> {
                     units[3 + k].as_mut()[state] = C::lane(&of[3 + k], state);
                 }
             }
-            for k in 0..6 {
-                wrenches[which][k] = C::number(&units[k]);
-            }
         }
-        let mut sums = [[C::zero(); 6]; 2];
-        for which in 0..2 {
-            for unit in 0..6usize.div_ceil(C::WIDTH) {
-                sums[which][unit] = C::load(wrenches[which].get(unit * C::WIDTH..).unwrap_or_default());
-            }
-        }
-        for unit in 0..carried.len().min(COLUMNS.div_ceil(C::WIDTH)) {
-            for pair in 0..C::WIDTH.div_ceil(2) {
-                let columns = C::columns(&carried[unit], pair);
-                for side in 0..C::WIDTH.min(2) {
-                    let column = unit * C::WIDTH + 2 * pair + side;
-                    if column >= COLUMNS {
-                        break;
-                    }
-                    let by = [self.of[0][PLACES[column]], self.of[1][PLACES[column]]];
-                    for lane in 0..C::WIDTH * C::STATES {
-                        for unit in 0..6usize.div_ceil(C::WIDTH) {
-                            let of = columns[side][unit].as_ref()[lane];
-                            for which in 0..2 {
-                                let sum = &mut sums[which][unit].as_mut()[lane];
-                                *sum = fma(-C::lane(&by[which], lane), of, *sum);
-                            }
-                        }
+        for column in 0..COLUMNS {
+            let Some([a, b, c, d, e, f, ..]) = carried.get(column / C::WIDTH) else { break };
+            let (arriving, place) = ([a, b, c, d, e, f], PLACES[column]);
+            let by = [self.of[0][place], self.of[1][place]];
+            for state in 0..C::STATES {
+                for k in 0..6 {
+                    let of = arriving[k].as_ref()[column % C::WIDTH + state];
+                    for which in 0..2 {
+                        let sum = &mut wrenches[which][k].as_mut()[state];
+                        *sum = fma(-C::lane(&by[which], state), of, *sum);
                     }
                 }
-            }
-        }
-        for which in 0..2 {
-            for unit in 0..6usize.div_ceil(C::WIDTH) {
-                C::store(&sums[which][unit], wrenches[which].get_mut(unit * C::WIDTH..).unwrap_or_default());
             }
         }
         for which in 0..2 {
@@ -87,7 +66,7 @@ impl<C: Columns> Changes<C> {
                 let number = |first: usize| three!(|k| C::lane(&of[first + k], state));
                 let l = cross_subtract(three!(|k| C::lane(&self.point[k], state)), number(6), number(9));
                 for k in 0..6 {
-                    units[k].as_mut()[state] = -C::lane(&wrenches[which][k], state);
+                    units[k].as_mut()[state] = -wrenches[which][k].as_ref()[state];
                 }
                 for k in 0..3 {
                     units[6 + k].as_mut()[state] = -C::lane(&of[6 + k], state);

@@ -42,9 +42,7 @@ pub trait Columns: Copy {
     /// The first numbers of a list; zero where it ends.
     fn load(row: &[Self::Number]) -> Self::Unit;
     /// The numbers of eight units in two neighbouring lanes.
-    fn across(units: &[Self::Unit; 8], pair: usize) -> [[Self::Lane; 8]; 2];
-    /// Six of the numbers that are carried, in two neighbouring columns: as many units as hold them.
-    fn columns(carried: &[Self::Unit; 9], pair: usize) -> [[Self::Unit; 6]; 2];
+    fn across(units: [&Self::Unit; 8], pair: usize) -> [[Self::Lane; 8]; 2];
     /// Writes as many numbers as the row has.
     fn store(unit: &Self::Unit, row: &mut [Self::Number]);
 }
@@ -73,11 +71,11 @@ impl<T, const COUNT: usize> AsMut<[T]> for Lanes<T, COUNT> {
 
 /// [`Columns::across`] by vectors of two numbers, which every target has.
 #[inline(always)]
-fn across(units: &[Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
+fn across(units: [&Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
     let mut lines = [[0.0; 8]; 2];
     for k in 0..4 {
         let two = |unit: &Lanes<f64, 8>| f64x2::new([unit.0[2 * pair], unit.0[2 * pair + 1]]);
-        let [one, other] = f64x2::transpose([two(&units[2 * k]), two(&units[2 * k + 1])]);
+        let [one, other] = f64x2::transpose([two(units[2 * k]), two(units[2 * k + 1])]);
         ([lines[0][2 * k], lines[0][2 * k + 1]], [lines[1][2 * k], lines[1][2 * k + 1]]) =
             (one.to_array(), other.to_array());
     }
@@ -134,14 +132,8 @@ impl Columns for EightColumns {
     }
 
     #[inline(always)]
-    fn across(units: &[Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
+    fn across(units: [&Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
         across(units, pair)
-    }
-
-    #[inline(always)]
-    fn columns([a, b, c, d, e, f, ..]: &[Lanes<f64, 8>; 9], pair: usize) -> [[Lanes<f64, 8>; 6]; 2] {
-        let [one, other] = across(&[*a, *b, *c, *d, *e, *f, *f, *f], pair);
-        [[Lanes(one); 6], [Lanes(other); 6]]
     }
 }
 
@@ -184,13 +176,8 @@ impl Columns for EightStates {
     }
 
     #[inline(always)]
-    fn across(units: &[Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
+    fn across(units: [&Lanes<f64, 8>; 8], pair: usize) -> [[f64; 8]; 2] {
         across(units, pair)
-    }
-
-    #[inline(always)]
-    fn columns([a, b, c, d, e, f, ..]: &[Lanes<f64, 8>; 9], _: usize) -> [[Lanes<f64, 8>; 6]; 2] {
-        [[*a, *b, *c, *d, *e, *f]; 2]
     }
 }
 
@@ -233,13 +220,8 @@ impl<T: Scalar> Columns for One<T> {
     }
 
     #[inline(always)]
-    fn across(units: &[[T; 1]; 8], _: usize) -> [[T; 8]; 2] {
-        [units.map(|[number]| number); 2]
-    }
-
-    #[inline(always)]
-    fn columns([a, b, c, d, e, f, ..]: &[[T; 1]; 9], _: usize) -> [[[T; 1]; 6]; 2] {
-        [[*a, *b, *c, *d, *e, *f]; 2]
+    fn across(units: [&[T; 1]; 8], _: usize) -> [[T; 8]; 2] {
+        [units.map(|[number]| *number); 2]
     }
 }
 

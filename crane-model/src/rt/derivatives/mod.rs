@@ -177,7 +177,7 @@ impl Piece {
             let unit = |column: usize| column.saturating_sub(columns.start);
             unit(j) / C::WIDTH..unit(end).div_ceil(C::WIDTH)
         };
-        sweeps.inward::<CAUSES>(own.start..own.end, beyond, swept, states, changes, &mut []);
+        sweeps.inward::<CAUSES>(own.start..columns.end, beyond, swept, states, changes, &mut []);
         sweeps.outward::<CAUSES>(own.clone(), units, swept, states, changes);
     }
 
@@ -207,8 +207,24 @@ impl Piece {
     /// Writes the first of the matrices, each state after the other: columns of A⁻¹ are its rows, and of its products rows lie side by side.
     #[inline(always)]
     fn write<C: Columns>(&self, n: usize, matrices: &[usize], swept: &[Entry<C>], out: &mut [C::Lane]) {
+        let zero = C::zero();
         for unit in self.units.clone() {
             for (place, matrix) in matrices.iter().enumerate() {
+                // A⁻¹ is symmetric.
+                if *matrix == 0 && C::STATES == 1 {
+                    let first = self.columns.start + unit * C::WIDTH;
+                    let count = C::WIDTH.min(self.columns.end - first);
+                    for i in 0..n {
+                        let start = (place * n + i) * n + first;
+                        let Some(entry) = swept.get(i * self.stride + unit) else { break };
+                        let (Some(to), lanes) = (out.get_mut(start..start + count), entry[0].as_ref()) else { break };
+                        match to.first_chunk_mut::<8>().zip(lanes.first_chunk::<8>()) {
+                            Some((to, lanes)) => *to = *lanes,
+                            None => to.iter_mut().zip(lanes).for_each(|(entry, number)| *entry = *number),
+                        }
+                    }
+                    continue;
+                }
                 let mut starts = [usize::MAX; 8];
                 for lane in 0..C::WIDTH * C::STATES {
                     let row = self.columns.start + unit * C::WIDTH + lane / C::STATES;
@@ -217,14 +233,14 @@ impl Piece {
                     }
                 }
                 for first in (0..n).step_by(8) {
-                    let mut block = [C::zero(); 8];
+                    let mut block = [&zero; 8];
                     for k in 0..8 {
                         let Some(entry) = swept.get((first + k) * self.stride + unit) else { break };
-                        block[k] = entry[*matrix];
+                        block[k] = &entry[*matrix];
                     }
                     let count = (n - first).min(8);
                     for pair in 0..(C::WIDTH * C::STATES).div_ceil(2) {
-                        for (side, line) in C::across(&block, pair).into_iter().enumerate() {
+                        for (side, line) in C::across(block, pair).into_iter().enumerate() {
                             let start = starts[2 * pair + side].saturating_add(first);
                             let Some(entries) = out.get_mut(start..start.saturating_add(count)) else { continue };
                             match entries.first_chunk_mut() {
@@ -237,6 +253,13 @@ impl Piece {
             }
         }
     }
+}
+
+/// Places of some numbers, without most of those that are zero.
+pub fn places(numbers: &[f64]) -> impl Iterator<Item = usize> + Clone {
+    let is_zero = |eight: &[f64]| eight.iter().fold(0, |bits, number| bits | number.to_bits()) << 1 == 0;
+    let eights = numbers.chunks(8).enumerate().filter(move |(_, eight)| !is_zero(eight));
+    eights.flat_map(|(place, eight)| 8 * place..8 * place + eight.len())
 }
 
 /// A⁻¹, row by row, of each state; `factors`: those of [`mass_factors`](crate::CraneModel::mass_factors), row by row.

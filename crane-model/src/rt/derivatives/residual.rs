@@ -2,6 +2,8 @@
 
 #![expect(clippy::inline_always, reason = "inlined where wider vectors are known, loops use them")]
 
+use core::ops::Range;
+
 use super::changes::Changes;
 use super::columns::{Columns, Constant, Scalar};
 use super::vectors::{Six, Three, commutator_add, cross_add, cross_subtract, dot, dot_add, plus, scaled_add, three};
@@ -146,8 +148,12 @@ impl<'a, C: Columns> Slopes<'a, C> {
         changes: &mut [Changes<C>],
     ) -> Self {
         let mut slopes = Slopes { links, factors, rows: &[] };
+        // Written in place: what a function returns would be copied.
+        let mut factors = [C::zero(); ROWS];
+        let mut vectors = [[C::zero(); 15]; 2];
         for first in (0..links.len()).step_by(C::WIDTH) {
-            let (factors, mut units) = (slopes.factors(first), [C::zero(); 15]);
+            slopes.factors(first, &mut factors);
+            let mut units = [C::zero(); 15];
             for lane in 0..C::WIDTH * C::STATES {
                 let own = Factors::<C>(&factors, lane).own();
                 for place in 0..15 {
@@ -164,7 +170,7 @@ impl<'a, C: Columns> Slopes<'a, C> {
             if changes.is_empty() {
                 continue;
             }
-            let vectors = Self::vectors(&factors);
+            Self::vectors(&factors, &mut vectors);
             for place in 0..15 {
                 let numbers = [spread::<C>(&vectors[0][place]), spread::<C>(&vectors[1][place])];
                 for column in 0..C::WIDTH {
@@ -178,17 +184,14 @@ impl<'a, C: Columns> Slopes<'a, C> {
     }
 
     #[inline(always)]
-    fn factors(&self, first: usize) -> [C::Unit; ROWS] {
-        let mut factors = [C::zero(); ROWS];
+    fn factors(&self, first: usize, factors: &mut [C::Unit; ROWS]) {
         for row in 0..ROWS {
             factors[row] = C::load(self.factors.get(row * self.links.len() + first..).unwrap_or_default());
         }
-        factors
     }
 
     #[inline(always)]
-    fn vectors(factors: &[C::Unit; ROWS]) -> Vectors<C::Unit> {
-        let mut units = [[C::zero(); 15]; 2];
+    fn vectors(factors: &[C::Unit; ROWS], units: &mut Vectors<C::Unit>) {
         for lane in 0..C::WIDTH * C::STATES {
             let vectors = Factors::<C>(factors, lane).vectors();
             for which in 0..2 {
@@ -197,34 +200,64 @@ impl<'a, C: Columns> Slopes<'a, C> {
                 }
             }
         }
-        units
     }
 
     /// ∂r/∂q and ∂r/∂v of some columns in place of ∂f/∂q and ∂f/∂v, row by row; `paths`: see [`mark_paths`], or nothing.
     #[inline(always)]
     pub(super) fn columns(&self, first: usize, paths: &[C::Number], matrices: [&mut [C::Number]; 2]) {
         let n = self.links.len();
-        let vectors = Self::vectors(&self.factors(first));
+        let mut factors = [C::zero(); ROWS];
+        let mut vectors = [[C::zero(); 15]; 2];
+        self.factors(first, &mut factors);
+        Self::vectors(&factors, &mut vectors);
         for (matrix, units) in matrices.into_iter().zip(&vectors) {
-            for ((i, own), row) in self.rows.iter().enumerate().zip(matrix.chunks_exact_mut(n.max(1))) {
-                let row = row.get_mut(first..).unwrap_or_default();
-                let (mut entries, on_path) = (C::load(row), C::load(paths.get(i * n + first..).unwrap_or_default()));
-                for lane in 0..C::WIDTH * C::STATES {
-                    let own = |first: usize| three!(|k| C::lane(&own[first + k], lane));
-                    let unit = |first: usize| three!(|k| units[first + k].as_ref()[lane]);
-                    let above = dot_add(own(own::OMEGA), unit(0), dot(own(own::UPSILON), unit(3)));
+            self.entries::<true, false>(0..first, first, paths, units, matrix);
+            self.entries::<true, true>(first..n.min(first + C::WIDTH), first, paths, units, matrix);
+            self.entries::<false, true>(first + C::WIDTH..n, first, paths, units, matrix);
+        }
+    }
+
+    /// Of some rows; whether entries are above the diagonal or on it, and whether below.
+    #[inline(always)]
+    fn entries<const ABOVE: bool, const BELOW: bool>(
+        &self,
+        own_rows: Range<usize>,
+        first: usize,
+        paths: &[C::Number],
+        units: &[C::Unit; 15],
+        matrix: &mut [C::Number],
+    ) {
+        let n = self.links.len();
+        for i in own_rows {
+            let (Some(own), Some(rest)) = (self.rows.get(i), matrix.get_mut(i * n + first..)) else { break };
+            // Also of the next row, which is not written: all of a vector is loaded in one piece.
+            let mut entries = C::load(rest);
+            let on_path =
+                if paths.is_empty() { C::zero() } else { C::load(paths.get(i * n + first..).unwrap_or_default()) };
+            for lane in 0..C::WIDTH * C::STATES {
+                let own = |first: usize| three!(|k| C::lane(&own[first + k], lane));
+                let unit = |first: usize| three!(|k| units[first + k].as_ref()[lane]);
+                let above = || dot_add(own(own::OMEGA), unit(0), dot(own(own::UPSILON), unit(3)));
+                let below = || {
                     let gyration = dot(own(own::HALF_GYRATION), unit(12));
                     let below = dot_add(own(own::LINEAR_MOMENTUM), unit(9), gyration);
-                    let below = dot_add(own(own::ANGULAR_MOMENTUM), unit(6), below);
-                    let mut product = if i <= first + lane / C::STATES { above } else { below };
-                    if !paths.is_empty() {
-                        product = product * on_path.as_ref()[lane];
+                    dot_add(own(own::ANGULAR_MOMENTUM), unit(6), below)
+                };
+                let mut product = match (ABOVE, BELOW) {
+                    (true, false) => above(),
+                    (false, _) => below(),
+                    (true, true) => {
+                        let (above, below) = (above(), below());
+                        if i <= first + lane / C::STATES { above } else { below }
                     }
-                    let entry = &mut entries.as_mut()[lane];
-                    *entry = -(-product + *entry);
+                };
+                if !paths.is_empty() {
+                    product = product * on_path.as_ref()[lane];
                 }
-                C::store(&entries, row);
+                let entry = &mut entries.as_mut()[lane];
+                *entry = -(-product + *entry);
             }
+            C::store(&entries, rest.get_mut(..n - first).unwrap_or_default());
         }
     }
 

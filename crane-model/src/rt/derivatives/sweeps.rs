@@ -10,7 +10,7 @@ use super::vectors::{cross_add, cross_subtract, dot, dot_add, scaled_add, three}
 use super::{Link, Own};
 
 /// Columns that are swept together, at most.
-pub const COLUMNS: usize = 48;
+pub const COLUMNS: usize = 32;
 
 /// Of a coordinate, in the lanes of a unit: A⁻¹, and entries of ∂q̈/∂q and ∂q̈/∂v.
 pub type Entry<C> = [<C as Columns>::Unit; 3];
