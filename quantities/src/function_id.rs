@@ -321,3 +321,10 @@ impl FunctionId {
         Self::ALL.iter().copied().find(|id| id.name() == name)
     }
 }
+
+impl Part {
+    /// Its functions, in the order of the table.
+    pub fn functions(self) -> impl Iterator<Item = FunctionId> {
+        FunctionId::ALL.iter().copied().filter(move |id| id.part() == self)
+    }
+}

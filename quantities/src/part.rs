@@ -1,7 +1,5 @@
 //! What is derived together.
 
-use crate::FunctionId;
-
 /// Functions that are derived together, because they share most of their expressions. An analysis of a spec requests one or several of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Part {
@@ -38,11 +36,6 @@ impl Part {
         Part::Derivatives,
         Part::MotionDerivatives,
     ];
-
-    /// Its functions, in the order of the table.
-    pub fn functions(self) -> impl Iterator<Item = FunctionId> {
-        FunctionId::ALL.iter().copied().filter(move |id| id.part() == self)
-    }
 
     /// Whether it is one of these.
     #[must_use]

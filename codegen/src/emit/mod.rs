@@ -76,12 +76,11 @@ pub fn emit(
         }
         items.extend(function::function(lowered, code, &labels, Number::Single));
     }
-    let (module, lanes) = match analyses.ensemble {
-        true => {
-            let (module, lanes) = lanes::lanes(chain, lowered, &labels);
-            (Some(module), lanes)
-        }
-        false => (None, lanes::one_by_one()),
+    let (module, lanes) = if analyses.ensemble {
+        let (module, lanes) = lanes::lanes(chain, lowered, &labels);
+        (Some(module), lanes)
+    } else {
+        (None, lanes::one_by_one())
     };
     items.extend(module);
     items.extend(crane::crane(chain, analyses, lowered, lanes));

@@ -48,7 +48,9 @@ pub struct AnySize;
 
 impl<'a, const N: usize, C: CraneModel<N>> AnyCrane<'a, OfSize<N>> for &'a C {
     fn for_statics(self) -> CraneRef<'a> {
-        const { assert!(Part::Statics.is_in(C::PARTS), "the crane has no statics: add `statics` to `analyses` of its spec") }
+        const {
+            assert!(Part::Statics.is_in(C::PARTS), "the crane has no statics: add `statics` to `analyses` of its spec");
+        }
         CraneRef::Instance(Box::new(Instance::<N, _>(self.clone())))
     }
 
@@ -57,7 +59,7 @@ impl<'a, const N: usize, C: CraneModel<N>> AnyCrane<'a, OfSize<N>> for &'a C {
             assert!(
                 Part::Dynamics.is_in(C::PARTS),
                 "the crane has no dynamics: add `dynamics` to `analyses` of its spec"
-            )
+            );
         }
         CraneRef::Instance(Box::new(Instance::<N, _>(self.clone())))
     }

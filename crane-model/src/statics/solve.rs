@@ -88,12 +88,11 @@ impl<'a> Problem<'a> {
     /// If the pose or the positions are not as many numbers as the crane has coordinates or drives.
     pub fn solve(&self) -> Equilibrium {
         let guess;
-        let from = match self.from {
-            Some(q) => q,
-            None => {
-                guess = self.crane.guess();
-                &guess
-            }
+        let from = if let Some(q) = self.from {
+            q
+        } else {
+            guess = self.crane.guess();
+            &guess
         };
         let found = search(&mut self.equations(), from, &self.settings);
         with_tipped_status(&*self.crane, self.t, from, found)

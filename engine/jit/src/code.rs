@@ -32,7 +32,7 @@ impl Code {
     /// The machine code of a line with each set of instructions that this processor has, the widest first.
     ///
     /// # Panics
-    /// As [`of`](Self::of).
+    /// As [`compile`](Self::compile).
     #[must_use]
     pub fn each(line: &StraightLine, rounding: Rounding, width: Width) -> Vec<Self> {
         processors(rounding, width).filter_map(|processor| Self::on(line, rounding, width, processor)).collect()

@@ -1,6 +1,6 @@
 //! Code in memory, and calls of it.
 //!
-//! Why a call is sound: `Code::of` asks for code only on processors that have its instructions. `encode` translates
+//! Why a call is sound: `Code::compile` asks for code only on processors that have its instructions. `encode` translates
 //! [`Instruction`]s one by one, gives back the registers that a call must keep, and returns; the only memory that the code reads or
 //! writes besides is at the places that instructions name, in the frame and among the results. [`Functions::new`] counts both,
 //! through all iterations of loops, and refuses what displacements do not reach; [`Functions::call`] compares them with the slices

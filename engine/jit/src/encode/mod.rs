@@ -22,7 +22,7 @@ pub fn encode(instructions: &[Instruction], lanes: Lanes) -> Vec<u8> {
     #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
     {
         let _ = (instructions, lanes);
-        unreachable!("`Code::of` asks for no code on other processors")
+        unreachable!("`Code::compile` asks for no code on other processors")
     }
 }
 
