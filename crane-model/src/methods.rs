@@ -127,7 +127,7 @@ macro_rules! sized_entry {
     };
 }
 
-/// A method of that trait. `Absent` is what a crane without the function returns: 0 if it lacks such a component, NaN if its parts do not contain the function.
+/// A method of that trait. What a crane without the function returns is [`absent`].
 macro_rules! sized_method {
     ($part:ident $rule:ident other $($row:tt)*) => {};
     ($part:ident written $result:tt $($row:tt)*) => {};

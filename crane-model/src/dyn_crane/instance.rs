@@ -1,4 +1,4 @@
-//! Adapts cranes with the number of coordinates in their type to the traits on slices.
+//! Adapts cranes with the number of coordinates in their type to the trait on slices.
 
 use crane_quantities::{Part, quantities};
 use nalgebra::{Matrix6, SMatrix, SVector};

@@ -1,4 +1,4 @@
-//! Cranes of any size through one pointer: the traits of a generated crane on slices.
+//! Cranes of any size through one pointer: the trait of a generated crane on slices.
 //!
 //! Statics, integrators, modes and stability are implemented once, in terms of [`DynCrane`]. It is the counterpart of [`CraneModel`](crate::CraneModel), which
 //! has the number of coordinates in its type; [`Instance`] adapts one to the other. Solvers take [both](AnyCrane).

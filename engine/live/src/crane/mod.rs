@@ -1,4 +1,4 @@
-//! A crane from a chain that implements the traits of all algorithms.
+//! A crane from a chain that implements what all algorithms need.
 
 mod fleet;
 mod loop_stiffness;

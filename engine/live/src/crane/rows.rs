@@ -1,6 +1,6 @@
 //! Quantities of many states, one state or eight at a time.
 //!
-//! A row is a state with its parameters. Its results are those of [`DynCrane`] and related traits at that state, to the last bit,
+//! A row is a state with its parameters. Its results are those of [`DynCrane`] at that state, to the last bit,
 //! whatever the other rows contain.
 
 use std::ops::Range;
