@@ -246,14 +246,14 @@ fn placed_at(link: &Link) -> Result<[f64; 3], String> {
 
 fn transform(link: &Link) -> Option<&Transform> {
     match link.placement.as_ref()?.value.as_ref()? {
-        Placement::Transform(given) => Some(given),
+        Placement::Transform(transform) => Some(transform),
         _ => None,
     }
 }
 
 /// The rotations of a transformation of what has this name: axis and angle, rad.
 fn turns(given: Option<&Transform>, name: &str) -> Result<Vec<(&'static str, f64)>, String> {
-    let given = given.and_then(|given| given.rotation.as_ref()?.value.as_ref());
+    let given = given.and_then(|transform| transform.rotation.as_ref()?.value.as_ref());
     let turns = given.map_or(&[][..], |given| &given.0);
     let turn = |turn: &Spanned<Turn>| {
         let (axis, angle) = match turn.value.as_ref()? {

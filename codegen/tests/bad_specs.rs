@@ -34,12 +34,12 @@ fn bad_specs() -> Vec<(String, Vec<u8>)> {
 fn each_bad_spec_gives_its_message() {
     let mut others = Vec::new();
     for (name, bytes) in bad_specs() {
-        let found = mistakes(&format!("{name}.yaml"), &bytes);
+        let diagnostics = mistakes(&format!("{name}.yaml"), &bytes);
         insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "bad_messages", omit_expression => true }, {
-            insta::assert_snapshot!(name.as_str(), found.to_string());
+            insta::assert_snapshot!(name.as_str(), diagnostics.to_string());
         });
         if let Some((code, _)) = name.split_once('_').filter(|(code, _)| code.starts_with('E')) {
-            let codes: Vec<_> = found.mistakes().iter().map(|mistake| mistake.code).collect();
+            let codes: Vec<_> = diagnostics.mistakes().iter().map(|mistake| mistake.code).collect();
             if codes != [code] {
                 others.push((name, codes));
             }
@@ -69,20 +69,20 @@ fn each_rule_has_a_bad_spec() {
 #[test]
 fn ten_mistakes_are_ten_messages() {
     let (name, bytes) = bad_specs().into_iter().find(|(name, _)| name == "ten_mistakes").expect("the spec");
-    let found = mistakes(&name, &bytes);
-    let codes: BTreeSet<_> = found.mistakes().iter().map(|mistake| mistake.code).collect();
-    assert_eq!((found.mistakes().len(), codes.len()), (10, 10), "{found}");
-    assert_eq!(found.headline(), "ten_mistakes:3:7: `Ten` is not a valid name [E020] (and 9 more)");
+    let diagnostics = mistakes(&name, &bytes);
+    let codes: BTreeSet<_> = diagnostics.mistakes().iter().map(|mistake| mistake.code).collect();
+    assert_eq!((diagnostics.mistakes().len(), codes.len()), (10, 10), "{diagnostics}");
+    assert_eq!(diagnostics.headline(), "ten_mistakes:3:7: `Ten` is not a valid name [E020] (and 9 more)");
 }
 
 #[test]
 fn a_hundred_megabytes_of_garbage_are_refused_unread() {
     let garbage: Vec<u8> = (0..100_000_000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     // The size alone decides, as the message says.
-    let found = mistakes("garbage.yaml", &garbage);
-    assert_eq!(found.mistakes()[0].code, "E001");
+    let diagnostics = mistakes("garbage.yaml", &garbage);
+    assert_eq!(diagnostics.mistakes()[0].code, "E001");
     insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "bad_messages", omit_expression => true }, {
-        insta::assert_snapshot!("E001_garbage", found.to_string());
+        insta::assert_snapshot!("E001_garbage", diagnostics.to_string());
     });
 }
 
@@ -108,7 +108,7 @@ fn too_many_joints_are_counted_and_too_many_values_refused() {
         format!("format: 1\nname: long\nlinks:\n{}", (0..count).map(link).collect::<String>())
     };
     for (count, code) in [(3_001, "E047"), (12_000, "E007")] {
-        let found = mistakes("long.yaml", links(count).as_bytes());
-        assert_eq!(found.mistakes().iter().map(|mistake| mistake.code).collect::<Vec<_>>(), [code], "{count}");
+        let diagnostics = mistakes("long.yaml", links(count).as_bytes());
+        assert_eq!(diagnostics.mistakes().iter().map(|mistake| mistake.code).collect::<Vec<_>>(), [code], "{count}");
     }
 }

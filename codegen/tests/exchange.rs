@@ -59,10 +59,10 @@ fn unsupported_robots_are_refused_with_the_reason() {
         let file = path.file_name().expect("a name").to_string_lossy();
         let source = SourceFile::new(&*file, std::fs::read_to_string(&path).expect("a file"));
         let fixed = if name.starts_with("U013") { vec!["sholder".to_owned()] } else { Vec::new() };
-        let found = exchange::import(&source, &ImportOptions { fixed, ..ImportOptions::default() }).expect_err(&name);
-        snapshot(&name, &found.to_string());
+        let diagnostics = exchange::import(&source, &ImportOptions { fixed, ..ImportOptions::default() }).expect_err(&name);
+        snapshot(&name, &diagnostics.to_string());
         let code = name.split('_').next().expect("a code").to_owned();
-        assert_eq!(found.mistakes().iter().map(|mistake| mistake.code).collect::<Vec<_>>(), [&code], "{name}: {found}");
+        assert_eq!(diagnostics.mistakes().iter().map(|mistake| mistake.code).collect::<Vec<_>>(), [&code], "{name}: {diagnostics}");
         shown.insert(code);
     }
     for rule in exchange::CATALOGUE {
@@ -407,9 +407,9 @@ fn moments_without_mass_are_part_of_the_crane() {
     let right = 0.03 + (0.8 + 0.2 * cos).powi(2) + 0.02 * sin * sin + 0.03 * cos * cos;
     // Pinocchio's, to the digits that it was noted with.
     assert!((right - 1.051_647_83_f64).abs() < 1e-8);
-    let found = quantity(&crane, FunctionId::MassMatrix, &[0.3, 0.2], &[0.0; 2])[0];
+    let value = quantity(&crane, FunctionId::MassMatrix, &[0.3, 0.2], &[0.0; 2])[0];
     // Rounding of a dozen operations.
-    assert!((found / right - 1.0).abs() < 1e-14, "{found}, {right}");
+    assert!((value / right - 1.0).abs() < 1e-14, "{value}, {right}");
     // The same in MJCF: a rotor beside the body that has the mass.
     let rotor = "<mujoco><worldbody><body name='arm'><joint axis='0 1 0'/>\
                  <inertial pos='0.5 0 0' mass='1' diaginertia='0.01 0.1 0.1'/>\
@@ -456,17 +456,17 @@ fn inertias_are_judged_by_what_moves() {
 /// Each slip alone makes an inertia impossible, and the message names it.
 #[test]
 fn the_message_about_an_impossible_inertia_names_the_slip() {
-    for (given, slip) in [
+    for (text, slip) in [
         ("{Ixx: -1, Iyy: 2, Izz: 2}", "the other sign of `Ixx`"),
         ("{Ixx: 1, Iyy: 2, Izz: 2, Ixy: 3}", "with `Ixy` 0.3 instead of 3 kg m²"),
         ("{Ixx: 11, Iyy: 14, Izz: 5, Ixy: 1, Ixz: 30, Iyz: 1}", "with `Ixz` 3 instead of 30 kg m²"),
         ("{about: origin, Ixx: 1, Iyy: 2, Izz: 2}", "leave out `about: origin`"),
     ] {
         let spec = format!(
-            "format: 1\nname: slip\nlinks:\n  - {{name: arm, joint: revolute, mass: 10, com: [1, 0.3, 0], inertia: {given}}}\n"
+            "format: 1\nname: slip\nlinks:\n  - {{name: arm, joint: revolute, mass: 10, com: [1, 0.3, 0], inertia: {text}}}\n"
         );
-        let found = compile::load(&SourceFile::new("slip", spec)).expect_err(given).to_string();
-        assert!(found.contains(slip), "{given}:\n{found}");
+        let found = compile::load(&SourceFile::new("slip", spec)).expect_err(text).to_string();
+        assert!(found.contains(slip), "{text}:\n{found}");
     }
 }
 
@@ -533,8 +533,8 @@ fn options_of_mjcf_are_merged_and_flags_hold() {
 fn equalities_have_their_defaults() {
     let (crane, found) = accelerations("default_equality.xml", &[0.3, 0.1]);
     assert!(crane.connectors().is_empty());
-    for (found, right) in found.iter().zip([14.7219, -18.5548]) {
-        assert!((found - right).abs() < 5e-5, "{found}, {right}");
+    for (value, right) in found.iter().zip([14.7219, -18.5548]) {
+        assert!((value - right).abs() < 5e-5, "{value}, {right}");
     }
     assert!(
         imported("default_equality.xml")
@@ -619,8 +619,8 @@ fn rotors_of_transmissions_are_armature() {
     let imported = imported("rotor.urdf");
     assert!(imported.spec.contains("  a_theta: 4\n"), "{}", imported.spec);
     let crane = chain(&SourceFile::new("rotor", imported.spec));
-    let found = quantity(&crane, FunctionId::MassMatrix, &[0.3], &[0.0])[0];
-    assert!((found - 4.51).abs() < 1e-14, "{found}");
+    let value = quantity(&crane, FunctionId::MassMatrix, &[0.3], &[0.0])[0];
+    assert!((value - 4.51).abs() < 1e-14, "{value}");
     assert!(
         imported.left_out.contains(
             &"Left out, limits and control of drives: `effort` of <limit>, `velocity` of <limit>, <type>.".to_owned()

@@ -42,11 +42,11 @@ fn lines_of_a_file_that_is_no_spec_are_not_shown() {
             &format!("extends_secret_{index}"),
             &[("secret", secret), ("over.yaml", "extends: secret\nname: mine\n")],
         );
-        let found = mistakes(&folder.join("over.yaml"));
-        let text = found.to_string();
+        let diagnostics = mistakes(&folder.join("over.yaml"));
+        let text = diagnostics.to_string();
         let words = ["root", "20228", "password", "word"];
         assert!(words.iter().all(|word| !text.contains(word)), "{text}");
-        assert!(text.contains("is not the spec of a crane") && found.mistakes()[0].code == "E008", "{text}");
+        assert!(text.contains("is not the spec of a crane") && diagnostics.mistakes()[0].code == "E008", "{text}");
     }
 }
 
@@ -195,9 +195,9 @@ fn a_base_that_cannot_be_read_and_a_circle_are_mistakes() {
     ];
     let folder = folder("extends_nothing", &files);
     for (file, expected) in [("lost.yaml", "lost.yaml:2:10: `extends: nowhere.yaml`"), ("one.yaml", "in a circle")] {
-        let found = mistakes(&folder.join(file));
-        assert_eq!(found.mistakes()[0].code, "E008");
-        assert!(found.headline().contains(expected), "{}", found.headline());
+        let diagnostics = mistakes(&folder.join(file));
+        assert_eq!(diagnostics.mistakes()[0].code, "E008");
+        assert!(diagnostics.headline().contains(expected), "{}", diagnostics.headline());
     }
 }
 

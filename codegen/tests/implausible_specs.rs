@@ -10,13 +10,13 @@ use crane_codegen::{Diagnostics, SourceFile, build, check, read};
 /// Warnings about a spec without mistakes.
 fn warnings(name: &str, text: &str) -> Diagnostics {
     let source = SourceFile::new(name, text);
-    let checked = read(&source).and_then(check).unwrap_or_else(|found| panic!("{found}"));
+    let checked = read(&source).and_then(check).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
     checked.warnings
 }
 
 /// Codes of the warnings about a spec, in the order of the file.
-fn codes(found: &Diagnostics) -> Vec<&'static str> {
-    found.mistakes().iter().map(|warning| warning.code).collect()
+fn codes(diagnostics: &Diagnostics) -> Vec<&'static str> {
+    diagnostics.mistakes().iter().map(|warning| warning.code).collect()
 }
 
 /// Files of a folder of this repository, by name, in order; only YAML.
@@ -40,13 +40,13 @@ fn specs(folder: &str) -> Vec<(String, String)> {
 fn each_implausible_spec_gives_its_warning() {
     let mut shown = BTreeSet::new();
     for (name, text) in specs("tests/implausible") {
-        let found = warnings(&format!("{name}.yaml"), &text);
+        let diagnostics = warnings(&format!("{name}.yaml"), &text);
         insta::with_settings!({ prepend_module_to_snapshot => false, snapshot_path => "implausible_messages", omit_expression => true }, {
-            insta::assert_snapshot!(name.as_str(), found.to_string());
+            insta::assert_snapshot!(name.as_str(), diagnostics.to_string());
         });
         if let Some((code, _)) = name.split_once('_').filter(|(code, _)| code.starts_with('W')) {
-            assert!(codes(&found).iter().all(|other| *other == code), "{name}: {found}");
-            assert!(!found.is_empty(), "{name} is plausible");
+            assert!(codes(&diagnostics).iter().all(|other| *other == code), "{name}: {diagnostics}");
+            assert!(!diagnostics.is_empty(), "{name} is plausible");
             shown.insert(code.to_owned());
         }
     }
@@ -105,8 +105,8 @@ fn shipped_and_described_cranes_are_plausible() {
     }
     assert!(cranes.len() > 10, "the folders were searched");
     for (name, text) in cranes {
-        let found = warnings(&name, &text);
-        assert!(found.is_empty(), "{found}");
+        let diagnostics = warnings(&name, &text);
+        assert!(diagnostics.is_empty(), "{diagnostics}");
     }
 }
 
@@ -124,7 +124,7 @@ fn values_of_parameters_are_looked_at() {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../specs/knuckle_boom.yaml"));
     let source = SourceFile::new("knuckle_boom.yaml", text.expect("a spec"));
     let with = |value| {
-        let checked = crane_codegen::compile::check(&source).unwrap_or_else(|found| panic!("{found}"));
+        let checked = crane_codegen::compile::check(&source).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         codes(&checked.warnings_with(&[("payload", value)]))
     };
     assert_eq!(with(800.0), [""; 0]);
@@ -140,7 +140,7 @@ fn angles_that_are_set_are_in_radians() {
         drives: [{coordinate: arm_theta, stiffness: 1e5, motion: {hold: tilt}}]\n";
     let source = SourceFile::new("arm.yaml", text);
     let with = |set: &[(&str, f64)]| {
-        let checked = crane_codegen::compile::check(&source).unwrap_or_else(|found| panic!("{found}"));
+        let checked = crane_codegen::compile::check(&source).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         codes(&checked.warnings_with(set))
     };
     assert_eq!(with(&[]), [""; 0]);

@@ -192,8 +192,8 @@ mod tests {
                 (force.by_states[0], by(&|h| at(z + h, v).1.force, 1e-9)),
                 (force.by_speed, by(&|h| at(z, v + h).1.force, 1e-7)),
             ];
-            for (place, (found, difference)) in differences.into_iter().enumerate() {
-                assert!((found / difference - 1.0).abs() < 1e-6, "{place}: {found} for {difference}");
+            for (index, (value, difference)) in differences.into_iter().enumerate() {
+                assert!((value / difference - 1.0).abs() < 1e-6, "{index}: {value} for {difference}");
             }
         }
     }

@@ -301,8 +301,8 @@ mod tests {
             SectionModuli { area: 2e-3, bending_y: 1e-4, bending_z: 5e-5, corners: 1.0, ..SectionModuli::ZERO };
         let wrench = Wrench { force: [4e4, 0.0, 0.0].into(), moment: [0.0, 3e3, 1e3].into() };
         let stresses = contour(&moduli, &wrench);
-        for (found, expected) in stresses.iter().zip([70e6, 30e6, -30e6, 10e6]) {
-            assert!((found - expected).abs() < 1e-6, "{stresses:?}");
+        for (value, expected) in stresses.iter().zip([70e6, 30e6, -30e6, 10e6]) {
+            assert!((value - expected).abs() < 1e-6, "{stresses:?}");
         }
     }
 

@@ -63,14 +63,14 @@ impl SectionModuli {
     pub fn mean(&self, other: &Self, part: f64) -> Self {
         let mean = |of: fn(&Self) -> f64| of(self) + part * (of(other) - of(self));
         Self {
-            area: mean(|own| own.area),
-            bending_y: mean(|own| own.bending_y),
-            bending_z: mean(|own| own.bending_z),
-            torsion: mean(|own| own.torsion),
-            shear_y: mean(|own| own.shear_y),
-            shear_z: mean(|own| own.shear_z),
-            corners: mean(|own| own.corners),
-            allowable_stress: mean(|own| own.allowable_stress),
+            area: mean(|moduli| moduli.area),
+            bending_y: mean(|moduli| moduli.bending_y),
+            bending_z: mean(|moduli| moduli.bending_z),
+            torsion: mean(|moduli| moduli.torsion),
+            shear_y: mean(|moduli| moduli.shear_y),
+            shear_z: mean(|moduli| moduli.shear_z),
+            corners: mean(|moduli| moduli.corners),
+            allowable_stress: mean(|moduli| moduli.allowable_stress),
         }
     }
 

@@ -77,7 +77,7 @@ fn lifted(crane: &dyn DynCrane, q: &[f64], v: &[f64]) -> Vec<bool> {
 fn off_line(places: &[Vector3<f64>], [from, to]: [usize; 2]) -> impl Iterator<Item = usize> {
     let along = (places[to] - places[from]).xy();
     let distance = move |place: &Vector3<f64>| along.perp(&(place - places[from]).xy()).abs() / along.norm_squared();
-    places.iter().enumerate().filter(move |(_, place)| distance(place) > ON_A_LINE).map(|(foot, _)| foot)
+    places.iter().enumerate().filter(move |(_, position)| distance(position) > ON_A_LINE).map(|(foot, _)| foot)
 }
 
 /// The line with the smallest margin.

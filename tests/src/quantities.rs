@@ -170,7 +170,7 @@ trait RowByRow: Entry {
     fn row_by_row(&self) -> impl Iterator<Item = f64> {
         let entry = *self;
         let numbers = move |place: usize| entry.numbers().nth(place).unwrap_or_default();
-        (0..Self::LEN).map(move |place| numbers(if Self::LEN == 16 { 4 * (place % 4) + place / 4 } else { place }))
+        (0..Self::LEN).map(move |index| numbers(if Self::LEN == 16 { 4 * (index % 4) + index / 4 } else { index }))
     }
 }
 

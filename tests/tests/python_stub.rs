@@ -23,7 +23,7 @@ fn the_stub_lists_the_methods_of_the_table() {
 /// A method with its documentation.
 fn method(id: FunctionId) -> Option<String> {
     let python = id.python()?;
-    let given = python.required.iter().map(|name| format!("{name}: ArrayLike, ")).collect::<Vec<_>>().concat();
+    let text = python.required.iter().map(|name| format!("{name}: ArrayLike, ")).collect::<Vec<_>>().concat();
     let optional = python.optional.map_or(String::new(), |name| format!("{name}: ArrayLike | None = None, "));
     let mut about = vec![format!("(...{}): {}", id.axes(), id.doc())];
     about.extend(id.remarks().iter().map(|remark| remark.trim().to_owned()));
@@ -31,6 +31,6 @@ fn method(id: FunctionId) -> Option<String> {
     let about = about.join("\n        ");
     let name = id.name();
     Some(format!(
-        "    def {name}(self, {given}{optional}*, invalid: str = \"raise\") -> Array:\n        \"\"\"{about}\"\"\"\n"
+        "    def {name}(self, {text}{optional}*, invalid: str = \"raise\") -> Array:\n        \"\"\"{about}\"\"\"\n"
     ))
 }

@@ -73,8 +73,8 @@ fn read_rows_given(
     given: Option<&str>,
     description: &Description,
 ) -> Outcome<Option<Vec<Vec<f64>>>> {
-    let Some(given) = given else { return Ok(None) };
-    let numbers = parse(given).map_or_else(|| parse_file(console, name, given), Ok)?;
+    let Some(text) = given else { return Ok(None) };
+    let numbers = parse(text).map_or_else(|| parse_file(console, name, text), Ok)?;
     let wanted = description.coordinates.len();
     if numbers.is_empty() || wanted == 0 || numbers.len() % wanted != 0 {
         let names: Vec<String> =

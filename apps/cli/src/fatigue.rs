@@ -74,8 +74,8 @@ impl Manoeuvres {
             repetitions: options.cycles,
         };
         let mut all = vec![first];
-        for given in &options.also {
-            let other = Repeated::read(given, choice, registry)?;
+        for text in &options.also {
+            let other = Repeated::read(text, choice, registry)?;
             if all.iter().any(|known| known.word == other.word) {
                 return Err(Problem::usage(
                     format!("{} is given twice", other.word),

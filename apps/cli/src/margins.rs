@@ -184,8 +184,8 @@ fn of_pose(asked: &MarginsRequest, crane: &LiveCrane, values: &[(usize, f64)]) -
 
 impl MarginsRequest {
     /// Whether a loop is unstable or its phase margin is below what it should be.
-    fn falls_short(&self, found: &Margins) -> bool {
-        !found.stable || found.phase.is_some_and(|(phase, _)| phase.abs() < self.least)
+    fn falls_short(&self, margins: &Margins) -> bool {
+        !margins.stable || margins.phase.is_some_and(|(phase, _)| phase.abs() < self.least)
     }
 }
 
@@ -328,11 +328,11 @@ fn write(
     let mut words = vec![vec![String::new(); columns_of]; rows_of];
     for (pose, row) in rows.iter().enumerate() {
         let places = axes.places(pose);
-        let Ok(found) = &row.found else { continue };
-        let margin = found.phase.map_or(180.0, |(phase, _)| phase.abs().to_degrees());
+        let Ok(margins) = &row.found else { continue };
+        let margin = margins.phase.map_or(180.0, |(phase, _)| phase.abs().to_degrees());
         // An unstable loop has no margin.
-        cells[places[y]][places[x]] = if found.stable { margin } else { 0.0 };
-        words[places[y]][places[x]] = if found.stable { format!("{margin:.0}") } else { "unstable".to_owned() };
+        cells[places[y]][places[x]] = if margins.stable { margin } else { 0.0 };
+        words[places[y]][places[x]] = if margins.stable { format!("{margin:.0}") } else { "unstable".to_owned() };
     }
     let Loop { p, i, d, filter, lead: [above, below], delay, lag } = asked.of;
     let numbers = [

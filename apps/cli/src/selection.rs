@@ -141,8 +141,8 @@ impl Registry {
     }
 
     /// The chain of a shipped crane or of a YAML file, and its text; warnings are shown, and are mistakes if `strict`.
-    pub(super) fn load(&self, given: &str, strict: bool) -> Outcome<(Chain, String)> {
-        spec_file::parse(&self.console, self.source(given)?, strict)
+    pub(super) fn load(&self, text: &str, strict: bool) -> Outcome<(Chain, String)> {
+        spec_file::parse(&self.console, self.source(text)?, strict)
     }
 
     /// Adds the crane of a YAML file, with edits of its spec, in place of one of the same name; returns its name.

@@ -41,8 +41,8 @@ fn inputs(crane: &LiveCrane, about: &About<'_>, names: Option<&[String]>) -> Out
 fn measured(crane: &LiveCrane, names: Option<&[String]>) -> Outcome<Vec<Output>> {
     let all = outputs(crane);
     let Some(names) = names else {
-        let is_shown = |(place, output): &(usize, Output)| {
-            *place < 2 * crane.size() || is_of_point(output.column.name.as_str(), crane.description())
+        let is_shown = |(index, output): &(usize, Output)| {
+            *index < 2 * crane.size() || is_of_point(output.column.name.as_str(), crane.description())
         };
         return Ok(all.into_iter().enumerate().filter(is_shown).map(|(_, output)| output).collect());
     };

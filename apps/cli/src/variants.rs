@@ -45,7 +45,7 @@ fn edited_by(spec: &CraneSpec, edits: &[Edit<'_>], check: Check<'_>) -> Outcome<
     let mut checked = check(spec.clone()).map_err(Problem::mistakes)?;
     for edit in edits {
         let found = check_used(edit.applied(&checked.spec)?, &checked.spec, check);
-        checked = found.map_err(|found| edit.refused(&checked.chain.name, found))?;
+        checked = found.map_err(|diagnostics| edit.refused(&checked.chain.name, diagnostics))?;
     }
     Ok(checked)
 }
@@ -54,19 +54,19 @@ fn edited_by(spec: &CraneSpec, edits: &[Edit<'_>], check: Check<'_>) -> Outcome<
 fn check_used(mut spec: CraneSpec, before: &CraneSpec, check: Check<'_>) -> Result<Checked, Diagnostics> {
     // An input may be all that uses a parameter.
     for _ in 0..2 {
-        let found = match check(spec.clone()) {
+        let diagnostics = match check(spec.clone()) {
             Ok(checked) => return Ok(checked),
-            Err(found) => found,
+            Err(diagnostics) => diagnostics,
         };
         let unused = [("parameters", code::unused_parameter), ("inputs", code::unused_input)].map(|(key, code)| {
-            let own = found.mistakes().iter().filter(|mistake| mistake.code == code);
+            let own = diagnostics.mistakes().iter().filter(|mistake| mistake.code == code);
             let names = own.filter_map(|mistake| before.source().text.get(mistake.span.start..mistake.span.end));
             let names = names.filter(|name| before.mentions(name)).map(|name| (name, Change::removed()));
             (key, names.collect::<Vec<_>>())
         });
         let removed: Vec<_> = unused.into_iter().filter(|(_, names)| !names.is_empty()).collect();
         if removed.is_empty() {
-            return Err(found);
+            return Err(diagnostics);
         }
         spec = spec.changed(&Change::keys(removed.into_iter().map(|(key, names)| (key, Change::keys(names)))))?;
     }
@@ -101,15 +101,15 @@ impl Edit<'_> {
     }
 
     /// What mistakes of the edit mean.
-    fn refused(&self, name: &str, found: Diagnostics) -> Problem {
+    fn refused(&self, name: &str, diagnostics: Diagnostics) -> Problem {
         match self {
-            Self::Rigid(otherwise) if found.mistakes().iter().any(|mistake| mistake.code == code::nothing_moves) => {
+            Self::Rigid(otherwise) if diagnostics.mistakes().iter().any(|mistake| mistake.code == code::nothing_moves) => {
                 Problem::usage(format!("with rigid beams, nothing in {name} can move: only its beams do"), *otherwise)
             }
             Self::Rigid(otherwise) => {
-                Problem::failed(format!("{name} has no form with rigid beams: {}", found.headline()), *otherwise)
+                Problem::failed(format!("{name} has no form with rigid beams: {}", diagnostics.headline()), *otherwise)
             }
-            _ => Problem::mistakes(found),
+            _ => Problem::mistakes(diagnostics),
         }
     }
 }
@@ -188,11 +188,11 @@ mod tests {
     fn rigid(crane: &str, text: &str) -> Result<Option<String>, String> {
         let checked = compile::check(&SourceFile::new(crane, text)).unwrap_or_else(|mistakes| panic!("{mistakes}"));
         let Some(change) = super::rigid(crane, &checked.spec.crane)? else { return Ok(None) };
-        let changed = checked.spec.changed(&change).and_then(check).unwrap_or_else(|found| panic!("{found}"));
+        let changed = checked.spec.changed(&change).and_then(check).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         let text = changed.spec.saved().text.clone();
         // What is saved is the same crane.
         let saved =
-            compile::load(&SourceFile::new("saved.yaml", text.as_str())).unwrap_or_else(|found| panic!("{found}"));
+            compile::load(&SourceFile::new("saved.yaml", text.as_str())).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         assert_eq!(format!("{:?}", changed.chain), format!("{saved:?}"));
         Ok(Some(text))
     }

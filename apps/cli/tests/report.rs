@@ -82,14 +82,14 @@ fn the_screws_of_a_page_move_its_frames_as_the_crane_does() {
             let index = |value: &Value| usize::try_from(value.as_u64().expect("an index")).expect("an index");
             let parent = body["parent"].as_u64().map(|_| motions[index(&body["parent"])]);
             let mut motion = parent.unwrap_or_else(Matrix4::identity);
-            let mut own = index(&body["moved_by"][0])..index(&body["moved_by"][1]);
-            while let Some(j) = own.next() {
+            let mut range = index(&body["moved_by"][0])..index(&body["moved_by"][1]);
+            while let Some(j) = range.next() {
                 if vectors[j] == true {
                     // A rotation vector is one turn about the sum of its screws.
                     let sum: Vec<f64> = (0..6).map(|k| (j..j + 3).map(|i| q[i] * screws[i][k]).sum()).collect();
                     let angle = Vector3::new(q[j], q[j + 1], q[j + 2]).norm();
                     motion *= exponential(&sum.iter().map(|entry| entry / angle).collect::<Vec<_>>(), angle);
-                    own.nth(1);
+                    range.nth(1);
                 } else {
                     motion *= exponential(&screws[j], q[j] - reference[j]);
                 }

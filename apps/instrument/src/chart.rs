@@ -85,7 +85,7 @@ fn axes(ranges: &[Range], drives: usize) -> Outcome<Axes> {
             return Err("a range is from one position of a drive to another".to_owned());
         }
         let steps = (count.max(2) - 1) as f64;
-        let values = (0..count).map(|place| from + (to - from) * (place as f64 / steps)).collect();
+        let values = (0..count).map(|index| from + (to - from) * (index as f64 / steps)).collect();
         Ok(Axis { varied: Varied::Drive(drive), values })
     };
     ranges.iter().map(axis).collect::<Outcome<_>>().map(Axes)

@@ -192,14 +192,14 @@ fn rest(crane: &LiveCrane, as_written: bool) -> (Value, Equilibrium) {
     let results = if as_written { report.json() } else { Value::Null };
     let texts = Texts { tables: Some(report), ..Texts::default() };
     let mut page = still(crane, &case.equilibrium, texts);
-    let found = &case.equilibrium;
+    let equilibrium = &case.equilibrium;
     page["results"] = results;
     page["rest"] = json!({
-        "stable": found.is_stable(), "rests": found.rests(), "words": found.status.to_string(), "steps": found.steps(), "q": found.q,
+        "stable": equilibrium.is_stable(), "rests": equilibrium.rests(), "words": equilibrium.status.to_string(), "steps": equilibrium.steps(), "q": equilibrium.q,
         "drives": starts(crane),
     });
-    if !found.is_stable() {
-        let failed = crane_model::runs::Reason::no_equilibrium(crane, found).for_crane(&crane.description().name);
+    if !equilibrium.is_stable() {
+        let failed = crane_model::runs::Reason::no_equilibrium(crane, equilibrium).for_crane(&crane.description().name);
         page["rest"]["why"] = json!(format!("{failed}; {}", failed.advice()));
     }
     (page, case.equilibrium)

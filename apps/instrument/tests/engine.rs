@@ -111,8 +111,8 @@ fn sliders_at_their_starts_change_nothing() {
 /// Two coordinates of a crane at a time while it is driven, by name.
 fn driven(answer: &Value, crane: &Value, name: &str) -> f64 {
     let columns = crane["cranes"][0]["run"]["columns"].as_array().expect("columns");
-    let place = columns.iter().position(|column| column["name"] == name).expect("a column");
-    answer["row"][place].as_f64().expect("a number")
+    let index = columns.iter().position(|column| column["name"] == name).expect("a column");
+    answer["row"][index].as_f64().expect("a number")
 }
 
 /// A lever sets the speed of a drive: after the ramp of half a second the joint turns at 0.2 rad/s, and stops when the lever is let go.

@@ -179,8 +179,8 @@ fn size(frames: &[Matrix4<f64>], anchors: &[Anchor]) -> f64 {
     let origins = frames.iter().map(|frame| frame.column(3).xyz());
     let places = origins.chain(anchors.iter().map(|anchor| (frames[anchor.body] * anchor.at.push(1.0)).xyz()));
     let [low, high] = places
-        .fold([Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)], |[low, high], place| {
-            [low.inf(&place), high.sup(&place)]
+        .fold([Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)], |[low, high], position| {
+            [low.inf(&position), high.sup(&position)]
         });
     if frames.is_empty() { 0.0 } else { (high - low).norm() }
 }

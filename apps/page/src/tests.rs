@@ -46,9 +46,9 @@ fn a_crane_without_a_run_is_shown_at_rest() {
     assert_eq!(written["run"]["rows"], 1);
     let pose = pose(written);
     assert_eq!(pose.len(), live.size());
-    for (shown, found) in pose.iter().zip(&equilibrium.q) {
+    for (shown, value) in pose.iter().zip(&equilibrium.q) {
         // serde_json reads numbers to within two units in the last place.
-        assert!((shown - found).abs() <= 2.0 * f64::EPSILON * found.abs(), "{shown}, {found}");
+        assert!((shown - value).abs() <= 2.0 * f64::EPSILON * value.abs(), "{shown}, {value}");
     }
 }
 

@@ -86,14 +86,14 @@ pub fn import_robot(
             std::io::ErrorKind::NotFound => PyFileNotFoundError::new_err(format!("{named}: {error}")),
             _ => PyOSError::new_err(format!("{named}: {error}")),
         })?;
-        let source = SourceFile::from_bytes(named, &bytes).map_err(|found| spec_error(py, &found))?;
+        let source = SourceFile::from_bytes(named, &bytes).map_err(|diagnostics| spec_error(py, &diagnostics))?;
         let folder = path.parent().map(PathBuf::from).unwrap_or_default();
         exchange::with_includes(source, &mut |file| {
             String::from_utf8(files::read_file(&folder.join(file), MAX_BYTES).ok()?).ok()
         })
     };
     let options = ImportOptions { fixed: fix, repair };
-    let imported = py.detach(|| exchange::import(&source, &options)).map_err(|found| spec_error(py, &found))?;
+    let imported = py.detach(|| exchange::import(&source, &options)).map_err(|diagnostics| spec_error(py, &diagnostics))?;
     py.detach(|| check_import(&imported)).map_err(|deviation| {
         PyRuntimeError::new_err(format!("{named}: the spec does not move as the robot's file says: {deviation}"))
     })?;
@@ -166,13 +166,13 @@ impl Crane {
         let number = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
             let name = name.extract::<String>().ok()?;
             let with_unit = value.extract::<String>().ok().and_then(|text| Some(Quantity::parse(&text)?.ok()?.value));
-            let given = || Argument::scalars(&name, &value).ok().filter(|given| given.shape.is_empty());
+            let given = || Argument::scalars(&name, &value).ok().filter(|argument| argument.shape.is_empty());
             let number = with_unit.or_else(|| Some(given()?.numbers[0]))?;
             Some((name, number))
         };
         let set: Vec<(String, f64)> = parameters.into_iter().flatten().filter_map(number).collect();
         let set: Vec<(&str, f64)> = set.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-        let checked = py.detach(|| check(&source)).map_err(|found| spec_error(py, &found))?;
+        let checked = py.detach(|| check(&source)).map_err(|diagnostics| spec_error(py, &diagnostics))?;
         warn_of_spec(py, &checked.warnings_with(&set))?;
         let Checked { mut chain, .. } = checked;
         if text.is_none()
@@ -241,7 +241,7 @@ impl Crane {
         };
         match edit::with_beam(&self.source, link, end, entries(keys)?) {
             Ok(changed) => Ok(changed.text),
-            Err(Unbending::Mistakes(found)) => Err(spec_error(py, &found)),
+            Err(Unbending::Mistakes(diagnostics)) => Err(spec_error(py, &diagnostics)),
             Err(Unbending::Refused(why)) => Err(PyValueError::new_err(why)),
         }
     }
@@ -478,10 +478,10 @@ pub fn input_index(description: &Description, name: &str) -> PyResult<usize> {
 
 /// The number to which an input is set.
 fn input(name: &str, unit: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
-    let given = Argument::scalars_in(unit, &format!("inputs['{name}']"), value)?;
-    match *given.numbers {
-        [value] if given.shape.is_empty() && value.is_finite() => Ok(value),
-        [value] if given.shape.is_empty() => {
+    let argument = Argument::scalars_in(unit, &format!("inputs['{name}']"), value)?;
+    match *argument.numbers {
+        [value] if argument.shape.is_empty() && value.is_finite() => Ok(value),
+        [value] if argument.shape.is_empty() => {
             Err(PyValueError::new_err(format!("inputs['{name}'] is {value}, not a finite number")))
         }
         _ => Err(PyTypeError::new_err(format!(

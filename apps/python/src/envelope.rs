@@ -231,8 +231,8 @@ fn axes_shape(envelope: &Envelope) -> Vec<usize> {
 }
 
 /// Whether the values of an axis, or positions at which a drive is held, are finite and plausible; `given`: what they were given as.
-pub fn check_axis(axis: &Axis, given: &str, description: &Description) -> PyResult<()> {
-    let wrong = |told: String| Err(PyValueError::new_err(format!("{given}{told}")));
+pub fn check_axis(axis: &Axis, text: &str, description: &Description) -> PyResult<()> {
+    let wrong = |told: String| Err(PyValueError::new_err(format!("{text}{told}")));
     if axis.values.is_empty() || axis.values.iter().any(|value| !value.is_finite()) {
         return wrong(": write one or more finite numbers".to_owned());
     }

@@ -82,9 +82,9 @@ impl Crane {
                 return Err(PyValueError::new_err(format!("hold: `{name}` is given twice")));
             }
             let unit = description.coordinates[description.drives[drive].coordinate].kind.unit();
-            let given = format!("hold['{name}']");
-            let argument = Argument::scalars_in(unit, &given, positions)?;
-            check_axis(&Axis { varied: Varied::Drive(drive), values: argument.numbers.clone() }, &given, description)?;
+            let text = format!("hold['{name}']");
+            let argument = Argument::scalars_in(unit, &text, positions)?;
+            check_axis(&Axis { varied: Varied::Drive(drive), values: argument.numbers.clone() }, &text, description)?;
             held.push((drive, argument));
         }
         Ok(held)

@@ -71,11 +71,11 @@ impl Crane {
             let tree = (crane as &dyn DynCrane).tree();
             for (body, of_body) in out.chunks_mut(16 * n * n).enumerate() {
                 let moving = tree.coordinates(body);
-                for (place, &m) in moving.iter().enumerate() {
-                    for &k in &moving[place..] {
+                for (index, &m) in moving.iter().enumerate() {
+                    for &k in &moving[index..] {
                         let rows = matrices.next().unwrap_or_default().transpose();
-                        for place in [m * n + k, k * n + m] {
-                            of_body[16 * place..16 * (place + 1)].copy_from_slice(rows.as_slice());
+                        for index in [m * n + k, k * n + m] {
+                            of_body[16 * index..16 * (index + 1)].copy_from_slice(rows.as_slice());
                         }
                     }
                 }

@@ -196,7 +196,7 @@ impl Crane {
                     matches!(axis, "x" | "y" | "z") && points.iter().any(|known| known.as_str() == point)
                 })
             };
-            let shown = |(place, output): &(usize, Output)| *place < 2 * n || is_point(&output.column.name);
+            let shown = |(index, output): &(usize, Output)| *index < 2 * n || is_point(&output.column.name);
             return Ok(all.into_iter().enumerate().filter(shown).map(|(_, output)| output).collect());
         };
         let named = |name: &String| {

@@ -37,7 +37,7 @@ impl<T: Batch> Multiply<T> for Option<PullBack<T>> {
     }
     fn multiply(&mut self, state: &products::ProductState<'_, T>, weights: &[T], take: &mut dyn FnMut(usize, T)) {
         let pulled = self.as_mut().map(|own| own.at(state, weights));
-        pulled.iter().flat_map(products::Pulled::all).enumerate().for_each(|(place, number)| take(place, number));
+        pulled.iter().flat_map(products::Pulled::all).enumerate().for_each(|(index, number)| take(index, number));
     }
 }
 
@@ -49,7 +49,7 @@ impl<T: Batch> Multiply<T> for Option<PushForward<T>> {
     }
     fn multiply(&mut self, state: &products::ProductState<'_, T>, changes: &[T], take: &mut dyn FnMut(usize, T)) {
         let pushed = self.as_mut().map(|own| own.at(state, changes));
-        pushed.into_iter().flatten().enumerate().for_each(|(place, number)| take(place, *number));
+        pushed.into_iter().flatten().enumerate().for_each(|(index, number)| take(index, *number));
     }
 }
 
@@ -66,7 +66,7 @@ impl Multiply<f64> for Large {
     }
     fn multiply(&mut self, state: &products::ProductState<'_>, changes: &[f64], take: &mut dyn FnMut(usize, f64)) {
         self.push.at(state, &self.parameters, changes, &mut self.results);
-        self.results.iter().enumerate().for_each(|(place, number)| take(place, *number));
+        self.results.iter().enumerate().for_each(|(index, number)| take(index, *number));
     }
 }
 

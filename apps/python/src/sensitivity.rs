@@ -71,7 +71,7 @@ impl Crane {
         let rows = CaseRows { found: &found, outputs: &first.outputs, count: names.len(), n: self.live.size() };
         let (outputs, count, n) = (rows.outputs.len(), rows.count, rows.n);
         let all = PyDict::new(py);
-        all.set_item("q", array(py, rows.pose(|found| found.q.clone(), n), shape, &[n])?)?;
+        all.set_item("q", array(py, rows.pose(|sensitivity| sensitivity.q.clone(), n), shape, &[n])?)?;
         all.set_item("values", array(py, rows.values(), shape, &[outputs])?)?;
         all.set_item("derivatives", array(py, rows.derivatives(), shape, &[outputs, count])?)?;
         let transposed = |found: &Sensitivity| (0..n).flat_map(|i| found.pose.iter().map(move |of| of[i])).collect();
@@ -81,7 +81,7 @@ impl Crane {
         all.set_item("units", rows.words(|output| output.unit))?;
         all.set_item("places", rows.places())?;
         let notes: Vec<Vec<String>> =
-            found.iter().map(|found| found.map_or_else(Vec::new, |found| found.notes.clone())).collect();
+            found.iter().map(|found| found.map_or_else(Vec::new, |sensitivity| sensitivity.notes.clone())).collect();
         all.set_item("notes", notes)?;
         let defaults: Vec<f64> = description.parameters.iter().map(|info| info.default).collect();
         let value = |row: &LiveCrane, index: usize| row.parameters().get(index).copied().unwrap_or(defaults[index]);
@@ -124,17 +124,17 @@ fn by_all(
     names: &[String],
     settings: Settings,
 ) -> Result<Sensitivity, Failed> {
-    let mut found = sensitivity(crane, parameters, &settings)?;
+    let mut sensitivity = sensitivity(crane, parameters, &settings)?;
     let differences: Vec<Differences> =
-        fixed.iter().map(|number| number.differentiate(crane, &found, &settings)).collect::<Result<_, _>>()?;
+        fixed.iter().map(|number| number.differentiate(crane, &sensitivity, &settings)).collect::<Result<_, _>>()?;
     let of_fixed = differences.iter().map(|own| own.derivatives.clone());
-    found.derivatives = in_order(names, std::mem::take(&mut found.derivatives).into_iter(), of_fixed);
-    found.pose =
-        in_order(names, std::mem::take(&mut found.pose).into_iter(), differences.iter().map(|own| own.pose.clone()));
-    found.notes.extend(fixed.iter().map(|number| {
+    sensitivity.derivatives = in_order(names, std::mem::take(&mut sensitivity.derivatives).into_iter(), of_fixed);
+    sensitivity.pose =
+        in_order(names, std::mem::take(&mut sensitivity.pose).into_iter(), differences.iter().map(|own| own.pose.clone()));
+    sensitivity.notes.extend(fixed.iter().map(|number| {
         format!("{} cannot be a live parameter: its derivatives are differences of whole cranes", number.place)
     }));
-    Ok(found)
+    Ok(sensitivity)
 }
 
 impl Crane {
@@ -166,12 +166,12 @@ impl CaseRows<'_> {
 
     /// The place of an output in a row.
     fn place(found: Option<&Sensitivity>, output: &Output) -> Option<usize> {
-        found.and_then(|found| found.index_of(&output.name))
+        found.and_then(|sensitivity| sensitivity.index_of(&output.name))
     }
 
     fn values(&self) -> Vec<f64> {
         let value = |found: Option<&Sensitivity>, output| match (found, Self::place(found, output)) {
-            (Some(found), Some(index)) => found.values[index],
+            (Some(sensitivity), Some(index)) => sensitivity.values[index],
             _ => f64::NAN,
         };
         self.found.iter().flat_map(|found| self.outputs.iter().map(move |output| value(*found, output))).collect()
@@ -183,7 +183,7 @@ impl CaseRows<'_> {
             for output in self.outputs {
                 let place = Self::place(*found, output);
                 all.extend((0..self.count).map(|k| match (found, place) {
-                    (Some(found), Some(index)) => found.derivatives[k][index],
+                    (Some(sensitivity), Some(index)) => sensitivity.derivatives[k][index],
                     _ => f64::NAN,
                 }));
             }
@@ -197,7 +197,7 @@ impl CaseRows<'_> {
 
     fn places(&self) -> Vec<Vec<String>> {
         let place = |found: Option<&Sensitivity>, output: &Output| match (found, Self::place(found, output)) {
-            (Some(found), Some(index)) => found.outputs[index].place.clone(),
+            (Some(sensitivity), Some(index)) => sensitivity.outputs[index].place.clone(),
             _ => String::new(),
         };
         self.found.iter().map(|found| self.outputs.iter().map(|output| place(*found, output)).collect()).collect()

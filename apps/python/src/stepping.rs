@@ -197,15 +197,15 @@ impl Motions {
         linear: bool,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let count = self.rows.len();
-        let given = Argument::of_width("values", values, places.len(), "one for each input")?;
-        if given.shape != [count] || given.numbers.iter().any(|number| !number.is_finite()) {
+        let argument = Argument::of_width("values", values, places.len(), "one for each input")?;
+        if argument.shape != [count] || argument.numbers.iter().any(|number| !number.is_finite()) {
             return Err(PyValueError::new_err(format!("values: give {count} rows of finite numbers")));
         }
-        if let Some(unknown) = places.iter().find(|place| **place >= self.inputs.len()) {
+        if let Some(unknown) = places.iter().find(|index| **index >= self.inputs.len()) {
             return Err(PyIndexError::new_err(format!("input {unknown}: there are {}", self.inputs.len())));
         }
-        let column = |j: usize| given.numbers.iter().skip(j).step_by(places.len()).copied().collect();
-        let changes: Changes = places.iter().enumerate().map(|(j, place)| (*place, Some(column(j)))).collect();
+        let column = |j: usize| argument.numbers.iter().skip(j).step_by(places.len()).copied().collect();
+        let changes: Changes = places.iter().enumerate().map(|(j, index)| (*index, Some(column(j)))).collect();
         let rows = self.paths(py, dt, 1, &changes, linear)?;
         array(py, rows.concat(), &[count], &[1 + 2 * self.n]).map(fixed)
     }
@@ -359,14 +359,14 @@ impl Motions {
                 continue;
             }
             let label = format!("inputs['{name}']");
-            let given = Argument::scalars_in(&self.inputs[index].1, &label, &value)?;
-            if let Some(wrong) = given.numbers.iter().find(|number| !number.is_finite()) {
+            let argument = Argument::scalars_in(&self.inputs[index].1, &label, &value)?;
+            if let Some(wrong) = argument.numbers.iter().find(|number| !number.is_finite()) {
                 return Err(PyValueError::new_err(format!("{label} is {wrong}, not a finite number")));
             }
-            let numbers = match given.shape.as_slice() {
-                [] | [1] => vec![given.numbers[0]; steps * count],
-                [rows] if *rows == count => given.numbers.repeat(steps),
-                [many, rows] if (*many, *rows) == (steps, count) => given.numbers,
+            let numbers = match argument.shape.as_slice() {
+                [] | [1] => vec![argument.numbers[0]; steps * count],
+                [rows] if *rows == count => argument.numbers.repeat(steps),
+                [many, rows] if (*many, *rows) == (steps, count) => argument.numbers,
                 shape => {
                     return Err(PyValueError::new_err(format!(
                         "{label} has shape {shape:?}: give one number, {count} of them, or ({steps}, {count})"

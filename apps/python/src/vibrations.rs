@@ -99,9 +99,9 @@ impl Crane {
             };
             let held: Vec<Held> = held.iter().map(of).collect();
             match steady(crane, at.t, &at.q, &held) {
-                Ok(found) => {
+                Ok(steady) => {
                     let numbers =
-                        [found.q, found.v, found.efforts, vec![found.drift, found.acceleration, 1.0]].concat();
+                        [steady.q, steady.v, steady.efforts, vec![steady.drift, steady.acceleration, 1.0]].concat();
                     out.copy_from_slice(&numbers);
                 }
                 Err(refused) => {

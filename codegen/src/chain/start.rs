@@ -90,8 +90,8 @@ mod tests {
             [Profile::Quintic, Profile::Cubic, Profile::Cycloid, |ramp| Profile::Trapezoid { ramp, blend: 0.25 }]
         {
             for (begin, position) in [(0.0, 1.0), (5.0, 1.0), (-2.0, 2.0), (-9.0, 3.0)] {
-                let found = make(ramp(begin)).start(&[]);
-                assert!((found - position).abs() < 1e-15, "{found} {position}");
+                let value = make(ramp(begin)).start(&[]);
+                assert!((value - position).abs() < 1e-15, "{value} {position}");
             }
         }
         let table = Profile::Table { from: 1.0, segments: spline(&[-2.0, 0.0, 1.0], &[1.0, 2.5, 3.0]) };

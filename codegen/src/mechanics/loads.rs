@@ -45,7 +45,7 @@ impl<'g> Acts<'g> for Loads<'_, 'g> {
             let Applied { at, force, moment } = applied(model, self.kinematics, load, rest.t);
             let path = model.chain.coordinates_of(load.body);
             let turning = |j: usize| generators[j].velocity(at).cross(force);
-            for (place, CoordinateId(j)) in path.iter().enumerate() {
+            for (index, CoordinateId(j)) in path.iter().enumerate() {
                 let moving = &generators[*j];
                 let torque = match load.axes {
                     LoadAxes::World => turning(*j),
@@ -54,7 +54,7 @@ impl<'g> Acts<'g> for Loads<'_, 'g> {
                 let torque = torque + half * moving.omega.cross(moment);
                 tangent.add(*j, [Some(BodyId(moving.body)), None], [zero, -torque]);
                 if load.axes == LoadAxes::Link {
-                    for CoordinateId(i) in &path[..=place] {
+                    for CoordinateId(i) in &path[..=index] {
                         tangent.matrix.add(*i, *j, 0.5 * moving.omega.dot(turning(*i)));
                     }
                 }

@@ -27,10 +27,10 @@ pub struct RotationVector<'g> {
 impl<'g> RotationVector<'g> {
     pub fn new(model: &Model<'g>, ids: &[CoordinateId; 3]) -> Self {
         let mut places = [0; 3];
-        for (place, id) in ids.iter().enumerate() {
-            places[model.chain.coordinates[id.0].axis.index()] = place;
+        for (index, id) in ids.iter().enumerate() {
+            places[model.chain.coordinates[id.0].axis.index()] = index;
         }
-        let rho = Vec3(places.map(|place| model.q[ids[place].0]));
+        let rho = Vec3(places.map(|index| model.q[ids[index].0]));
         let x = rho.dot(rho);
         let c = [0, 1, 2, 3, 4, 5].map(|k| x.stumpff(k));
         let name = model.chain.coordinates[ids[0].0].name.rsplit_once('_').map_or("", |(element, _)| element);
@@ -42,14 +42,14 @@ impl<'g> RotationVector<'g> {
 
     /// Three numbers, one per coordinate, as a vector along the axes.
     pub fn along_axes<T: Copy>(&self, of_coordinates: [T; 3]) -> [T; 3] {
-        self.places.map(|place| of_coordinates[place])
+        self.places.map(|index| of_coordinates[index])
     }
 
     /// The components of a vector, coordinate by coordinate.
     pub fn by_coordinates<T: Copy>(&self, along_axes: [T; 3]) -> [T; 3] {
         let mut numbers = along_axes;
-        for (place, number) in self.places.into_iter().zip(along_axes) {
-            numbers[place] = number;
+        for (index, number) in self.places.into_iter().zip(along_axes) {
+            numbers[index] = number;
         }
         numbers
     }

@@ -69,7 +69,7 @@ impl<'g> Strained<'g> {
             Strain::Coupling { coordinate: CoordinateId(j), leader: CoordinateId(i), ratio } => {
                 let ratio = model.number(ratio);
                 let mut jacobian = vec![(*j, model.graph.constant(1.0)), (*i, -ratio)];
-                jacobian.sort_by_key(|(place, _)| *place);
+                jacobian.sort_by_key(|(index, _)| *index);
                 Strained::without_points(model.q[*j] - ratio * model.q[*i], jacobian)
             }
         }
@@ -119,8 +119,8 @@ impl<'g> Strained<'g> {
 
     /// Adds `c Jᵀ J`.
     pub fn add_square(&self, c: Expr<'g>, matrix: &mut SymmetricMatrix<'g>) {
-        for (place, &(j, one)) in self.jacobian.iter().enumerate() {
-            for &(i, other) in &self.jacobian[..=place] {
+        for (index, &(j, one)) in self.jacobian.iter().enumerate() {
+            for &(i, other) in &self.jacobian[..=index] {
                 matrix.add(i, j, c * one * other);
             }
         }
@@ -164,8 +164,8 @@ impl<'g> Strained<'g> {
             }
             Strain::Turning(_) => {
                 let slopes: Vec<_> = self.jacobian.iter().map(|(_, slope)| *slope).collect();
-                for (place, &(j, _)) in self.jacobian.iter().enumerate() {
-                    let by_j = model.graph.derivatives(&slopes[..=place], model.q[j]);
+                for (index, &(j, _)) in self.jacobian.iter().enumerate() {
+                    let by_j = model.graph.derivatives(&slopes[..=index], model.q[j]);
                     for (&(i, _), second) in self.jacobian.iter().zip(by_j) {
                         matrix.add(i, j, tension * second);
                     }

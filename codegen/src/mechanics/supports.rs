@@ -67,14 +67,14 @@ impl<'g> Acts<'g> for Supports<'_, 'g> {
 
 /// The base coordinates that the crane has: place in `x y z ψ θ φ`, and place in q.
 fn base_coordinates<'a>(model: &'a Model<'_>) -> impl Iterator<Item = (usize, usize)> + Clone + 'a {
-    model.chain.base.iter().enumerate().filter_map(|(place, id)| id.map(|CoordinateId(j)| (place, j)))
+    model.chain.base.iter().enumerate().filter_map(|(index, id)| id.map(|CoordinateId(j)| (index, j)))
 }
 
 /// Column of U for a place in `x y z ψ θ φ` [Urbaś 2016, Eq. (16), with the columns in that order]: the displacement of
 /// the point at r by a small motion of that coordinate.
-fn linear_column<'g>(model: &Model<'g>, r: Vec3<'g>, place: usize) -> Vec3<'g> {
+fn linear_column<'g>(model: &Model<'g>, r: Vec3<'g>, index: usize) -> Vec3<'g> {
     let (zero, one) = (model.zero(), model.graph.constant(1.0));
-    Vec3(match place {
+    Vec3(match index {
         0 => [one, zero, zero],
         1 => [zero, one, zero],
         2 => [zero, zero, one],
@@ -118,7 +118,7 @@ impl<'g> Stretched<'g> {
         let zero = Vec3::zero(model.graph);
         let (attachment, jacobian): (_, Vec<_>) = match support.kinematics {
             SupportKinematics::Linear => {
-                (None, base_coordinates(model).map(|(place, j)| (j, linear_column(model, r, place))).collect())
+                (None, base_coordinates(model).map(|(index, j)| (j, linear_column(model, r, index))).collect())
             }
             SupportKinematics::Exact => {
                 let base = &kinematics.poses[0];
@@ -264,10 +264,10 @@ fn forces<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>, v: &[Expr<'g>]) ->
 }
 
 /// `Σ uᵀ s δ`: the force due to the free play of the linear supports at q̃ = 0.
-fn linear_preload<'g>(model: &Model<'g>, place: usize) -> Expr<'g> {
+fn linear_preload<'g>(model: &Model<'g>, index: usize) -> Expr<'g> {
     let terms = linear(model).map(|support| {
         let (s, free_play) = (model.vector(&support.stiffness), model.vector(&support.free_play));
-        let column = linear_column(model, model.vector(&support.position), place);
+        let column = linear_column(model, model.vector(&support.position), index);
         Vec3([0, 1, 2].map(|axis| s[axis] * free_play[axis])).dot(column)
     });
     balanced_sum(model, terms.collect())

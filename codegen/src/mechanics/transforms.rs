@@ -55,7 +55,7 @@ pub fn second_derivatives<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) ->
     let moving: Vec<Vec<usize>> = moving(model).map(|(_, moving)| moving).collect();
     let nonzero = |moving: &Vec<usize>| {
         let places = moving.iter().enumerate().filter(|(_, m)| rotations[**m]);
-        places.map(|(place, _)| moving.len() - place).sum::<usize>()
+        places.map(|(index, _)| moving.len() - index).sum::<usize>()
     };
     let pairs: usize = moving.iter().map(nonzero).sum();
     if pairs <= MOST_PAIRS_WRITTEN_OUT || model.chain.has_branches() {
@@ -76,8 +76,8 @@ fn written_out<'g>(model: &Model<'g>, kinematics: &Kinematics<'g>) -> Vec<Expr<'
     let mut outputs = Vec::new();
     for (body, moving) in moving(model) {
         let first: Vec<_> = moving.iter().map(|&j| derivative(kinematics, body, j)).collect();
-        for (place, &m) in moving.iter().enumerate() {
-            for (&n, first) in moving.iter().zip(&first).skip(place) {
+        for (index, &m) in moving.iter().enumerate() {
+            for (&n, first) in moving.iter().zip(&first).skip(index) {
                 // The columns of Ω_n T are directions, so Ω_m only rotates them.
                 let rotated = first.map(|column| kinematics.generators[m].rotate(column));
                 let within = |curvature: &&Curvature<'g>| curvature.first <= m && n < curvature.first + 3;

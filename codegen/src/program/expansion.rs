@@ -151,8 +151,8 @@ fn tangent<S: Scalar>(n: usize, segments: &[[usize; 3]], entries: &[[usize; 2]],
         }
     }
     for ([i, j], number) in entries.iter().zip(numbers) {
-        let place = place(*i, *j);
-        upper[place] = upper[place].clone() + number.clone();
+        let index = place(*i, *j);
+        upper[index] = upper[index].clone() + number.clone();
     }
     upper
 }

@@ -225,9 +225,9 @@ fn what_is_pulled_back_is_the_weighted_sum_of_derivatives() {
     for (x, y) in [(0.7, -1.2), (-1.3, 0.4), (1.6, 1.1)] {
         let all = values(&p, x, y);
         let (found, derivatives) = all.split_at(2);
-        for (found, derivatives) in found.iter().zip(derivatives.chunks(count)) {
+        for (value, derivatives) in found.iter().zip(derivatives.chunks(count)) {
             let expected: f64 = derivatives.iter().enumerate().map(|(i, slope)| weight(i) * slope).sum();
-            assert!((found - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{x}, {y}: {found} for {expected}");
+            assert!((value - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{x}, {y}: {value} for {expected}");
         }
     }
 }
@@ -251,8 +251,8 @@ fn what_is_pushed_forward_is_the_sum_of_derivatives_and_changes() {
     for (x, y) in [(0.7, -1.2), (-1.3, 0.4), (1.6, 1.1)] {
         let all = values(&p, x, y);
         for i in 0..count {
-            let (found, expected) = (all[i], changes[0] * all[count + i] + changes[1] * all[2 * count + i]);
-            assert!((found - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{x}, {y}: {found} for {expected}");
+            let (value, expected) = (all[i], changes[0] * all[count + i] + changes[1] * all[2 * count + i]);
+            assert!((value - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{x}, {y}: {value} for {expected}");
         }
     }
     // A root at 0 has no slope.
@@ -296,9 +296,9 @@ fn what_does_not_depend_on_an_input_has_no_derivative() {
 fn a_hyperbolic_tangent_overflows_nowhere() {
     let p = program(|_, x, _| vec![x.tanh()], Graph::simplifying());
     for x in [0.0, 1e-9, -0.4, 3.0, -40.0, 1e9, -f64::MAX] {
-        let (found, expected) = (values(&p, x, 0.0)[0], x.tanh());
+        let (value, expected) = (values(&p, x, 0.0)[0], x.tanh());
         // 1 − exp(−2x) loses digits for small x: its error is ε relative to 1, not to x.
-        assert!((found - expected).abs() <= 2.0 * f64::EPSILON, "{x}: {found} for {expected}");
+        assert!((value - expected).abs() <= 2.0 * f64::EPSILON, "{x}: {value} for {expected}");
     }
 }
 

@@ -239,10 +239,10 @@ impl<'a> Check<'a> {
         let from = from?;
         let to = match to {
             None => None,
-            Some((given, to)) => {
+            Some((section, to)) => {
                 let to = to?;
                 if from.between(&to, 0.5).is_none() {
-                    self.report(rule::taper(given.span, from.name(), to.name()));
+                    self.report(rule::taper(section.span, from.name(), to.name()));
                     return None;
                 }
                 Some(to)
@@ -281,7 +281,7 @@ impl<'a> Check<'a> {
     /// Damping of a beam with equal sections.
     fn beam_damping(&mut self, given: Option<&Spanned<BeamDamping>>) -> Damping {
         let none = || [Value::ZERO; 3];
-        match given.and_then(|given| given.value.as_ref()) {
+        match given.and_then(|beam_damping| beam_damping.value.as_ref()) {
             None => Damping::Coefficients(none()),
             Some(BeamDamping::Coefficients(each)) => Damping::Coefficients(self.directions(each, "the damping")),
             Some(BeamDamping::Beta(beta)) => Damping::Beta(match &beta.value {

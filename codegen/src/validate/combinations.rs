@@ -23,7 +23,7 @@ impl<'a> Check<'a> {
             let partial = |of| preset.map_or(1.0, |preset| partial_factor(preset.name(), of));
             let weight = combination.weight.as_ref();
             let weight =
-                weight.map_or(partial(Multiplied::Weight), |given| self.constant(given, &subject("the weight")));
+                weight.map_or(partial(Multiplied::Weight), |constant| self.constant(constant, &subject("the weight")));
             self.factors_are_there(combination, &name);
             let hoisting = combination.hoisting.as_ref().and_then(|hoisting| hoisting.value.as_ref());
             let dynamic = hoisting.map_or(1.0, |hoisting| {
@@ -102,12 +102,12 @@ impl<'a> Check<'a> {
 
     /// The combination with which the crane is computed.
     pub(super) fn combination(&mut self, crane: &'a Crane, known: &[Combination]) -> Option<Combination> {
-        let given = crane.combination.as_ref()?;
-        let wanted = given.value.as_deref()?;
+        let text = crane.combination.as_ref()?;
+        let wanted = text.value.as_deref()?;
         let found = known.iter().find(|combination| combination.name == wanted);
         if found.is_none() {
             let help = suggest(wanted, known.iter().map(|combination| combination.name.as_str()));
-            self.report(rule::unknown_combination(given.span, wanted, help));
+            self.report(rule::unknown_combination(text.span, wanted, help));
         }
         found.cloned()
     }

@@ -70,8 +70,8 @@ impl<'a> Check<'a> {
         let sheaves = sheaves(connector);
         let over: Vec<_> =
             sheaves.iter().map(|sheave| self.attachment(sheave, &format!("a sheave of rope `{name}`"))).collect();
-        let falls = connector.falls.as_ref().map_or(Some(1), |given| {
-            self.count(given, &format!("the falls of rope `{name}`"), |count| rule::falls(given.span, name, count))
+        let falls = connector.falls.as_ref().map_or(Some(1), |constant| {
+            self.count(constant, &format!("the falls of rope `{name}`"), |count| rule::falls(constant.span, name, count))
         });
         let points: Option<Vec<Attachment>> = [from].into_iter().chain(over).chain([to]).collect();
         Some(StrainLine { points: points?, falls: falls? })
@@ -218,7 +218,7 @@ impl<'a> Check<'a> {
         let damping = self.point_number(rope.damping.as_ref(), (name, "damping"));
         let length = self.rope_length(rope, span, name);
         let place = format!("the largest tension of rope `{name}`");
-        let max_tension = rope.max_tension.as_ref().map(|given| self.constant(given, &place));
+        let max_tension = rope.max_tension.as_ref().map(|constant| self.constant(constant, &place));
         Law::Rope(Rope { stiffness: self.rope_stiffness(rope, span, name, &length), damping, length, max_tension })
     }
 

@@ -36,9 +36,9 @@ impl<'a> Check<'a> {
         let pump = given.value.as_ref()?;
         let max_flow = self.constant(&pump.max_flow, "the maximum flow of the pump");
         let pressure = pump.pressure.as_ref();
-        let pressure = pressure.map(|given| self.constant(given, "the pressure of the pump"));
+        let pressure = pressure.map(|constant| self.constant(constant, "the pressure of the pump"));
         let volume =
-            pump.volume.as_ref().map_or(VOLUME, |given| self.constant(given, "the volume between pump and valves"));
+            pump.volume.as_ref().map_or(VOLUME, |constant| self.constant(constant, "the volume between pump and valves"));
         Some(Pump { max_flow, pressure, volume })
     }
 
@@ -94,7 +94,7 @@ impl<'a> Check<'a> {
 
     /// The command of a valve over time, if it has one.
     fn opening(&mut self, valve: &spec::Valve, span: Span, name: &str) -> Option<Profile> {
-        let Some(given) = &valve.opening else {
+        let Some(motion) = &valve.opening else {
             if valve.gain.is_none() {
                 self.report(rule::uncommanded_valve(span, name));
             }
@@ -105,7 +105,7 @@ impl<'a> Check<'a> {
                 self.report(rule::valve_commanded_twice(other.span, name, key));
             }
         }
-        self.motion(given.value.as_ref()?, Whose::Key, given.span)
+        self.motion(motion.value.as_ref()?, Whose::Key, motion.span)
     }
 
     fn valve(&mut self, given: &spec::Valve, name: &str) -> Valve {
@@ -113,7 +113,7 @@ impl<'a> Check<'a> {
         let flow = self.constant(&given.flow, &subject("flow"));
         let drop = self.constant(&given.pressure_drop, &subject("pressure drop"));
         let mut optional = |given: Option<&Spanned<Constant>>, what: &str, default| {
-            given.map_or(default, |given| self.constant(given, &subject(what)))
+            given.map_or(default, |constant| self.constant(constant, &subject(what)))
         };
         let overlap = optional(given.overlap.as_ref(), "overlap", 0.0);
         let valve = Valve {
@@ -125,8 +125,8 @@ impl<'a> Check<'a> {
             feed_forward: optional(given.feed_forward.as_ref(), "feed-forward", 1.0),
             leakage: optional(given.leakage.as_ref(), "leakage", 0.0),
         };
-        if let Some(given) = given.overlap.as_ref().filter(|_| overlap >= 1.0) {
-            self.report(rule::covered_valve(given.span, name, overlap));
+        if let Some(constant) = given.overlap.as_ref().filter(|_| overlap >= 1.0) {
+            self.report(rule::covered_valve(constant.span, name, overlap));
         }
         valve
     }
@@ -145,7 +145,7 @@ impl<'a> Check<'a> {
         let retracted = self.constant(&given.retracted, &subject("retracted length"));
         let stroke = self.constant(&given.stroke, &subject("stroke"));
         let mut pressure =
-            |given: Option<&Spanned<Constant>>, what: &str| given.map(|given| self.constant(given, &subject(what)));
+            |given: Option<&Spanned<Constant>>, what: &str| given.map(|constant| self.constant(constant, &subject(what)));
         let max_pressure = pressure(given.max_pressure.as_ref(), "maximum pressure");
         let back_pressure = pressure(given.back_pressure.as_ref(), "back pressure").unwrap_or(0.0);
         let bulk_modulus = pressure(given.bulk_modulus.as_ref(), "bulk modulus");
@@ -212,7 +212,7 @@ impl<'a> Check<'a> {
     }
 
     /// Reports a cylinder whose joint is not between its pins, or that has another joint between them.
-    fn spans(&mut self, given: &spec::Cylinder, name: &str, joint: CoordinateId, [foot, head]: [BodyId; 2]) {
+    fn spans(&mut self, cylinder: &spec::Cylinder, name: &str, joint: CoordinateId, [foot, head]: [BodyId; 2]) {
         // The bodies of a link with a mistake are missing between the pins.
         if self.unknown.links {
             return;
@@ -224,9 +224,9 @@ impl<'a> Check<'a> {
         between.sort_unstable();
         let called = &self.coordinates[joint.0].name;
         if !between.contains(&joint) {
-            self.report(rule::spans_not(given.coordinate.span, name, called));
+            self.report(rule::spans_not(cylinder.coordinate.span, name, called));
         } else if let Some(other) = between.iter().find(|id| **id != joint && self.not_a_joint(**id).is_none()) {
-            self.report(rule::spans_more(given.coordinate.span, name, called, &self.coordinates[other.0].name));
+            self.report(rule::spans_more(cylinder.coordinate.span, name, called, &self.coordinates[other.0].name));
         }
     }
 }

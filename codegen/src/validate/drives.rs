@@ -109,8 +109,8 @@ impl<'a> Check<'a> {
                 ("damping", drive.damping.as_ref().map(|given| given.span)),
                 ("effort", drive.effort.as_ref().map(|given| given.span)),
                 ("max_effort", drive.max_effort.as_ref().map(|given| given.span)),
-                ("max_rate", drive.max_rate.as_ref().map(|given| given.span)),
-                ("max_power", drive.max_power.as_ref().map(|given| given.span)),
+                ("max_rate", drive.max_rate.as_ref().map(|constant| constant.span)),
+                ("max_power", drive.max_power.as_ref().map(|constant| constant.span)),
             ] {
                 if let Some(span) = span {
                     let subject = format!("drive `{name}`");
@@ -146,11 +146,11 @@ impl<'a> Check<'a> {
             self.keep_positive(stiffness.clone(), &broken);
         }
         let [max_rate, max_power] = [(&drive.max_rate, "rate"), (&drive.max_power, "power")].map(|(given, what)| {
-            let given = given.as_ref()?;
+            let constant = given.as_ref()?;
             if max_effort.is_none() {
-                self.report(rule::limit_without_effort(given.span, name, format!("max_{what}")));
+                self.report(rule::limit_without_effort(constant.span, name, format!("max_{what}")));
             }
-            self.number_of(given, of, &format!("the maximum {what} of drive `{name}`")).as_constant()
+            self.number_of(constant, of, &format!("the maximum {what} of drive `{name}`")).as_constant()
         });
         Transmission::Flexible {
             stiffness,

@@ -25,7 +25,7 @@ impl<'a> Check<'a> {
             ("bend", beam.bend.as_ref().map(|given| given.span)),
             ("extra_mass", beam.extra_mass.as_ref().map(|given| given.span)),
             ("safety_factor", beam.safety_factor.as_ref().map(|given| given.span)),
-            ("damping", beam.damping.as_ref().map(|given| given.span)),
+            ("damping", beam.damping.as_ref().map(|beam_damping| beam_damping.span)),
         ];
         for (key, span) in beside {
             if let Some(span) = span {

@@ -81,12 +81,12 @@ impl<'a> Check<'a> {
     }
 
     fn joins(&mut self, event: &str, joins: &spec::Joins, points: &[Point]) -> JoinsInfo {
-        let point = joins.point.as_ref().and_then(|given| Some((given, given.value.as_deref()?)));
-        let index = point.and_then(|(given, wanted)| {
+        let point = joins.point.as_ref().and_then(|text| Some((text, text.value.as_deref()?)));
+        let index = point.and_then(|(text, wanted)| {
             let index = points.iter().position(|point| point.name == wanted);
             if index.is_none() {
                 let help = suggest(wanted, points.iter().map(|point| point.name.as_str()));
-                self.report(rule::unknown_point(given.span, wanted, help));
+                self.report(rule::unknown_point(text.span, wanted, help));
             }
             index
         });

@@ -272,8 +272,8 @@ fn likely_slip(mass: f64, com: [f64; 3], written: [f64; 6], about: About) -> Opt
             let right = all.filter(|(k, factor)| written[*k] != 0.0 && changed(*k, *factor));
             let told: Vec<String> = right
                 .map(|(k, factor)| {
-                    let [given, better] = [written[k], written[k] * factor].map(rounded);
-                    format!("with `{}` {better} instead of {given} kg m² it would be possible: a power of ten", KEYS[k])
+                    let [text, better] = [written[k], written[k] * factor].map(rounded);
+                    format!("with `{}` {better} instead of {text} kg m² it would be possible: a power of ten", KEYS[k])
                 })
                 .collect();
             // Of several, none is likely; of higher powers, even less.

@@ -13,14 +13,14 @@ impl<'a> Check<'a> {
             self.unknown_inputs = true;
             return;
         };
-        for (given, input) in &entries.0 {
-            let (Some(name), Some(input)) = (self.name(given), &input.value) else {
+        for (text, input) in &entries.0 {
+            let (Some(name), Some(input)) = (self.name(text), &input.value) else {
                 self.unknown_inputs = true;
                 continue;
             };
             let unit = self.text(input.unit.as_ref(), &format!("the unit of input `{name}`"));
             let about = self.text(input.about.as_ref(), &format!("`about` of input `{name}`"));
-            let unless_set = self.unless_set(name, given.span, input, unit.as_deref());
+            let unless_set = self.unless_set(name, text.span, input, unit.as_deref());
             let (unit, about) = (unit.unwrap_or_default(), about.unwrap_or_default());
             self.inputs.push(Input { name: name.to_owned(), unit, about, unless_set });
             self.used_inputs.push(false);
@@ -46,15 +46,15 @@ impl<'a> Check<'a> {
     }
 
     /// The input of that name.
-    pub(super) fn input(&mut self, given: &Spanned<String>) -> Option<Profile> {
-        let name = given.value.as_deref()?;
+    pub(super) fn input(&mut self, text: &Spanned<String>) -> Option<Profile> {
+        let name = text.value.as_deref()?;
         if let Some(index) = self.inputs.iter().position(|input| input.name == name) {
             self.used_inputs[index] = true;
             return Some(Profile::Input(InputId(index), Box::new(self.inputs[index].unless_set.clone())));
         }
         if !self.unknown_inputs {
             let help = suggest(name, self.inputs.iter().map(|input| input.name.as_str()));
-            self.report(rule::unknown_input(given.span, name, help));
+            self.report(rule::unknown_input(text.span, name, help));
         }
         None
     }

@@ -92,13 +92,13 @@ impl<'a> Check<'a> {
         attached.path.extend(self.placed(link, motion));
 
         let first = self.bodies.len();
-        let own = LinkBodies { first, carried: self.carried(link, name, attached) };
-        self.note_stage(link, outer, &own, coordinate);
-        self.shapes_of(link, &own);
-        if !name.is_empty() && self.links.insert(name, own.clone()).is_some() {
+        let bodies = LinkBodies { first, carried: self.carried(link, name, attached) };
+        self.note_stage(link, outer, &bodies, coordinate);
+        self.shapes_of(link, &bodies);
+        if !name.is_empty() && self.links.insert(name, bodies.clone()).is_some() {
             self.report(rule::duplicate_name(link.name.span, "links", name, "an earlier link"));
         }
-        own
+        bodies
     }
 
     /// Appends a body; its name must not be taken. It comes after the one that carries it, also while there are mistakes: all walks from
@@ -210,9 +210,9 @@ impl<'a> Check<'a> {
     }
 
     /// Translation and rotations.
-    pub(super) fn transform(&mut self, given: &Transform) -> ([Value; 3], Vec<(Axis, Value)>) {
-        let translation = self.vector_or_zero(given.translation.as_ref(), "`translation`");
-        (translation, self.turns(given.rotation.as_ref()))
+    pub(super) fn transform(&mut self, transform: &Transform) -> ([Value; 3], Vec<(Axis, Value)>) {
+        let translation = self.vector_or_zero(transform.translation.as_ref(), "`translation`");
+        (translation, self.turns(transform.rotation.as_ref()))
     }
 
     /// Rotations, each about the axes as rotated by the previous ones.

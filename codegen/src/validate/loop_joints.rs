@@ -111,9 +111,9 @@ impl<'a> Check<'a> {
         let frames = chain.frames(&chain.guess, &self.defaults);
         let frame = |end: &crate::chain::Attachment| end.body.map_or(Frame::WORLD, |body| frames[body.0]);
         let mut joints = std::mem::take(&mut chain.loop_joints);
-        for (joint, given) in joints.iter_mut().zip(entries(crane.loop_joints.as_ref())) {
+        for (joint, loop_joint) in joints.iter_mut().zip(entries(crane.loop_joints.as_ref())) {
             if chain.closed_by(joint).into_iter().all(|coordinate| chain.is_prescribed(coordinate)) {
-                self.report(rule::prescribed_loop(given.name.span, format!("loop joint `{}`", joint.name), "loop"));
+                self.report(rule::prescribed_loop(loop_joint.name.span, format!("loop joint `{}`", joint.name), "loop"));
             }
             match &mut joint.kind {
                 LoopJointKind::Pin { across, to_axis } => {
@@ -132,7 +132,7 @@ impl<'a> Check<'a> {
                 LoopJointKind::Rod { .. }
                     if chain.distance(joint.ends.each_ref(), &chain.guess, &self.defaults) < NONE =>
                 {
-                    self.report(rule::meeting_rod(given.name.span, &joint.name));
+                    self.report(rule::meeting_rod(loop_joint.name.span, &joint.name));
                 }
                 LoopJointKind::Ball
                 | LoopJointKind::Rod { .. }

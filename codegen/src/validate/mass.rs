@@ -16,7 +16,7 @@ impl<'a> Check<'a> {
             ("mass", link.mass.as_ref().map(|given| given.span)),
             ("bodies", link.bodies.as_ref().map(|given| given.span)),
             ("beam", link.beam.as_ref().map(|given| given.span)),
-            ("rope", link.rope.as_ref().map(|given| given.span)),
+            ("rope", link.rope.as_ref().map(|hanging_rope| hanging_rope.span)),
         ]
         .into_iter()
         .filter_map(|(key, span)| Some((key, span?)))

@@ -44,32 +44,32 @@ fn of_one_link<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
 
 impl Check<'_> {
     /// A name that is a `snake_case` identifier. Keywords of Rust become raw identifiers there, except those that cannot.
-    pub(super) fn name<'n>(&mut self, given: &'n Spanned<String>) -> Option<&'n str> {
-        let name = given.value.as_deref()?;
+    pub(super) fn name<'n>(&mut self, text: &'n Spanned<String>) -> Option<&'n str> {
+        let name = text.value.as_deref()?;
         let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
         let identifier = name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(letters);
         if !identifier || name.len() > LONGEST_NAME {
             let why = if identifier { "longer than 64 characters" } else { "not an identifier" };
-            self.report(rule::not_an_identifier(given.span, name.chars().take(40).collect::<String>(), why));
+            self.report(rule::not_an_identifier(text.span, name.chars().take(40).collect::<String>(), why));
             return None;
         }
         if NEVER_NAMES.contains(&name) {
-            self.report(rule::keyword(given.span, name, "Rust reserves this word"));
+            self.report(rule::keyword(text.span, name, "Rust reserves this word"));
             return None;
         }
         Some(name)
     }
 
     /// The name of the crane, which becomes a module at the root of a program.
-    pub(super) fn crane_name<'n>(&mut self, given: &'n Spanned<String>) -> Option<&'n str> {
-        let name = self.name(given)?;
+    pub(super) fn crane_name<'n>(&mut self, text: &'n Spanned<String>) -> Option<&'n str> {
+        let name = self.name(text)?;
         // `gen` is a keyword since edition 2024.
         if name == "gen" || syn::parse_str::<syn::Ident>(name).is_err() {
-            self.report(rule::keyword(given.span, name, "a keyword of Rust, where the crane is a module"));
+            self.report(rule::keyword(text.span, name, "a keyword of Rust, where the crane is a module"));
             return None;
         }
         if CRATES.contains(&name) {
-            self.report(rule::keyword(given.span, name, "the crane's program uses a crate of this name"));
+            self.report(rule::keyword(text.span, name, "the crane's program uses a crate of this name"));
             return None;
         }
         Some(name)
@@ -100,17 +100,17 @@ impl Check<'_> {
     }
 
     /// The coordinate with that name.
-    pub(super) fn coordinate(&mut self, given: &Spanned<String>) -> Option<CoordinateId> {
-        self.find_coordinate(given, |_| true)
+    pub(super) fn coordinate(&mut self, text: &Spanned<String>) -> Option<CoordinateId> {
+        self.find_coordinate(text, |_| true)
     }
 
     /// The coordinate with that name, where those of joints are expected: only these are suggested for a name that is unknown.
-    pub(super) fn joint_coordinate(&mut self, given: &Spanned<String>) -> Option<CoordinateId> {
-        self.find_coordinate(given, |owner| *owner == Owner::Joint)
+    pub(super) fn joint_coordinate(&mut self, text: &Spanned<String>) -> Option<CoordinateId> {
+        self.find_coordinate(text, |owner| *owner == Owner::Joint)
     }
 
-    fn find_coordinate(&mut self, given: &Spanned<String>, is_offered: fn(&Owner) -> bool) -> Option<CoordinateId> {
-        let name = given.value.as_deref()?;
+    fn find_coordinate(&mut self, text: &Spanned<String>, is_offered: fn(&Owner) -> bool) -> Option<CoordinateId> {
+        let name = text.value.as_deref()?;
         let found = self.coordinates.iter().position(|coordinate| coordinate.name == name);
         if found.is_none() && !self.unknown.links {
             let known = self.coordinates.iter().zip(&self.owners).filter(|(_, owner)| is_offered(owner));
@@ -123,7 +123,7 @@ impl Check<'_> {
                 Some(meant) => format!("did you mean `{meant}`?"),
                 None => suggest(name, known),
             };
-            self.report(rule::unknown_coordinate(given.span, name, help));
+            self.report(rule::unknown_coordinate(text.span, name, help));
         }
         found.map(CoordinateId)
     }

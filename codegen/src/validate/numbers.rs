@@ -153,12 +153,12 @@ impl<'a> Check<'a> {
     /// A whole number within the limit of its key; `None` after a mistake, of which this is the one about other numbers.
     pub(super) fn count(
         &mut self,
-        given: &Spanned<Constant>,
+        constant: &Spanned<Constant>,
         subject: &str,
         broken: impl FnOnce(f64) -> Mistake,
     ) -> Option<u32> {
-        let number = self.constant(given, subject);
-        let Limit::Whole(most) = given.value.as_ref()?.measure().limit else { return None };
+        let number = self.constant(constant, subject);
+        let Limit::Whole(most) = constant.value.as_ref()?.measure().limit else { return None };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an integer from 1 to `most`
         if (1.0..=f64::from(most)).contains(&number) && number.fract() == 0.0 {
             return Some(number as u32);

@@ -36,8 +36,8 @@ impl Attached {
     }
 
     /// At the tip of a link.
-    fn at_tip(place: &LinkBodies) -> Self {
-        Attached::at(place.last(), place.tip.clone(), [place.tip.clone(), Value::ZERO, Value::ZERO])
+    fn at_tip(bodies: &LinkBodies) -> Self {
+        Attached::at(bodies.last(), bodies.tip.clone(), [bodies.tip.clone(), Value::ZERO, Value::ZERO])
     }
 }
 
@@ -64,10 +64,10 @@ impl<'a> Check<'a> {
                 let place = place.cloned();
                 let name = link.value.as_deref().unwrap_or_default();
                 match (place, at.as_ref().map(|at| (at.value.as_ref(), at.span))) {
-                    (Some(place), None | Some((Some(Place::Tip), _))) => Some(Attached::at_tip(&place)),
-                    (Some(place), Some((Some(Place::Start), span))) => Some(self.at_start(name, &place, span)),
-                    (Some(place), Some((Some(Place::Point(at)), span))) => {
-                        Some(self.at_point(name, &place, (at, span)))
+                    (Some(bodies), None | Some((Some(Place::Tip), _))) => Some(Attached::at_tip(&bodies)),
+                    (Some(bodies), Some((Some(Place::Start), span))) => Some(self.at_start(name, &bodies, span)),
+                    (Some(bodies), Some((Some(Place::Point(at)), span))) => {
+                        Some(self.at_point(name, &bodies, (at, span)))
                     }
                     (None, _) | (_, Some((None, _))) => None,
                 }
@@ -113,20 +113,20 @@ impl<'a> Check<'a> {
     }
 
     /// At the beginning of a beam or a rope.
-    fn at_start(&mut self, name: &str, place: &LinkBodies, span: Span) -> Attached {
-        if place.tip.is_zero() && !self.unknown.links {
+    fn at_start(&mut self, name: &str, bodies: &LinkBodies, span: Span) -> Attached {
+        if bodies.tip.is_zero() && !self.unknown.links {
             self.report(rule::start_of_rigid(span, name));
         }
-        Attached::at(place.first(), Value::ZERO, [Value::ZERO; 3])
+        Attached::at(bodies.first(), Value::ZERO, [Value::ZERO; 3])
     }
 
     /// At a point of a link; on a beam or a rope it is between its beginning and its end.
-    fn at_point(&mut self, name: &str, place: &LinkBodies, (at, span): (&[Spanned<Number>; 3], Span)) -> Attached {
+    fn at_point(&mut self, name: &str, bodies: &LinkBodies, (at, span): (&[Spanned<Number>; 3], Span)) -> Attached {
         let [x, y, z] = at.each_ref().map(|given| self.number(given, "`at`"));
-        if place.tip.is_zero() {
-            return Attached::at(place.first(), x.clone(), [x, y, z]);
+        if bodies.tip.is_zero() {
+            return Attached::at(bodies.first(), x.clone(), [x, y, z]);
         }
-        let length = place.length();
+        let length = bodies.length();
         let (here, whole) = (self.now(&x), self.now(&length));
         let tolerance = WRITTEN * whole;
         let broken = rule::beside_the_beam(span, name, here, whole);
@@ -137,19 +137,19 @@ impl<'a> Check<'a> {
         self.keep_positive(x.clone() + WRITTEN * length, &broken);
         if (here - whole).abs() <= tolerance {
             // The tip, but beside the axis.
-            let end = place.tip.clone();
-            return Attached::at(place.last(), end.clone(), [end, y, z]);
+            let end = bodies.tip.clone();
+            return Attached::at(bodies.last(), end.clone(), [end, y, z]);
         }
-        let (body, x) = self.element_at(place, x);
+        let (body, x) = self.element_at(bodies, x);
         Attached::at(body, x.clone(), [x, y, z])
     }
 
     /// The body of a link at a position along x, and the position along it: for a beam, the element that contains it.
-    pub(super) fn element_at(&self, place: &LinkBodies, x: Value) -> (Option<BodyId>, Value) {
-        let reach = self.now(&x) + AT_THE_JOINT * place.starts.last().map_or(0.0, |start| self.now(start));
-        let element = place.starts.iter().rposition(|start| self.now(start) <= reach).unwrap_or(0);
-        let start = place.starts.get(element).cloned().unwrap_or(Value::ZERO);
-        (place.first().map(|BodyId(first)| BodyId(first + element)), x - start)
+    pub(super) fn element_at(&self, bodies: &LinkBodies, x: Value) -> (Option<BodyId>, Value) {
+        let reach = self.now(&x) + AT_THE_JOINT * bodies.starts.last().map_or(0.0, |start| self.now(start));
+        let element = bodies.starts.iter().rposition(|start| self.now(start) <= reach).unwrap_or(0);
+        let start = bodies.starts.get(element).cloned().unwrap_or(Value::ZERO);
+        (bodies.first().map(|BodyId(first)| BodyId(first + element)), x - start)
     }
 
     /// The coordinates that move a body, in the order of q.

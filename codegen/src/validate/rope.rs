@@ -13,12 +13,12 @@ impl<'a> Check<'a> {
     /// Appends the links of a rope.
     pub(super) fn rope(
         &mut self,
-        given: &'a Spanned<HangingRope>,
+        hanging_rope: &'a Spanned<HangingRope>,
         link: &str,
         span: Span,
         mut attached: Attached,
     ) -> Carried {
-        let links = given.value.as_ref().and_then(|rope| {
+        let links = hanging_rope.value.as_ref().and_then(|rope| {
             let broken = |count| rule::rope_links(rope.links.span, count);
             Some((rope, self.count(&rope.links, "`links`", broken)?))
         });

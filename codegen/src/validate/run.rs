@@ -32,7 +32,7 @@ impl<'a> Check<'a> {
         for joint in entries(crane.joints.as_ref()) {
             let name = self.text(Some(&joint.name), "the name of a joint").unwrap_or_default();
             self.register_name("joints", &name, "an earlier joint".into(), joint.name.span);
-            let coordinate = joint.coordinate.as_ref().and_then(|given| self.coordinate(given));
+            let coordinate = joint.coordinate.as_ref().and_then(|text| self.coordinate(text));
             let kind = coordinate.map(|CoordinateId(index)| self.coordinates[index].kind);
             let subject = format!("`at` of joint `{name}`");
             let at = joint.at.as_ref().map_or(0.0, |at| self.fixed(at, Whose::Joint(kind), &subject));
@@ -69,11 +69,11 @@ impl<'a> Check<'a> {
     fn in_frame(
         &mut self,
         crane: &Crane,
-        given: &Spanned<String>,
+        text: &Spanned<String>,
         frames: &[NamedFrame],
         at: [Value; 3],
     ) -> Option<(BodyId, [Value; 3])> {
-        let name = given.value.as_deref()?;
+        let name = text.value.as_deref()?;
         if let Some((frame, body)) = frames.iter().find(|frame| frame.name == name).and_then(|it| Some((it, it.body?)))
         {
             return Some((body, frame.transform_point(at)));
@@ -87,7 +87,7 @@ impl<'a> Check<'a> {
             } else {
                 suggest(name, known)
             };
-            self.report(rule::unknown_frame(given.span, name, help));
+            self.report(rule::unknown_frame(text.span, name, help));
         }
         None
     }
@@ -129,7 +129,7 @@ impl<'a> Check<'a> {
     pub(super) fn run(&mut self, given: Option<&Spanned<spec::Run>>) -> Run {
         let run = given.and_then(|given| given.value.clone()).unwrap_or_default();
         let mut seconds =
-            |given: Option<&Spanned<Constant>>, default, key| given.map_or(default, |given| self.constant(given, key));
+            |given: Option<&Spanned<Constant>>, default, key| given.map_or(default, |constant| self.constant(constant, key));
         let duration = seconds(run.duration.as_ref(), 10.0, "`duration`");
         let step = seconds(run.step.as_ref(), 1e-4, "`step`");
         let output = seconds(run.output.as_ref(), 0.01, "`output`");

@@ -45,8 +45,8 @@ impl<'a> Check<'a> {
     }
 
     /// A cross-section by its shape or its numbers.
-    pub(super) fn shape(&mut self, given: &Spanned<Section>) -> Option<Shape> {
-        Some(match given.value.as_ref()? {
+    pub(super) fn shape(&mut self, section: &Spanned<Section>) -> Option<Shape> {
+        Some(match section.value.as_ref()? {
             Section::Box { height, width, thickness } => {
                 let size = [self.number(height, "`height`"), self.number(width, "`width`")];
                 let wall = self.number(thickness, "`thickness`");

@@ -14,7 +14,7 @@ const MESHES: [&str; 2] = ["stl", "obj"];
 
 impl Check<'_> {
     /// The forms of a link; on a beam, each is carried by the element at its place.
-    pub(super) fn shapes_of(&mut self, link: &Link, own: &LinkBodies) {
+    pub(super) fn shapes_of(&mut self, link: &Link, bodies: &LinkBodies) {
         let given = link.shape.as_ref().and_then(|shape| shape.value.as_ref());
         for shape in given.into_iter().flat_map(|shapes| &shapes.0).filter_map(|shape| shape.value.as_ref()) {
             let (form, at, rotation) = match shape {
@@ -46,7 +46,7 @@ impl Check<'_> {
             if let spec::Shape::Cylinder(round) | spec::Shape::Capsule(round) = shape {
                 turns.extend(onto(round.axis.as_ref().and_then(|axis| axis.value)));
             }
-            let (body, x) = self.element_at(own, x);
+            let (body, x) = self.element_at(bodies, x);
             if let Some(body) = body {
                 let path = placement::transform([x, y, z], &turns, Vec::new());
                 self.shapes.push(Shape { body, path, form });

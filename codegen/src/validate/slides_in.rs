@@ -64,8 +64,8 @@ pub(super) struct Outer {
 }
 
 /// The axis of a beam; `None` if a mistake left it without bodies.
-fn axis_of(place: &LinkBodies) -> Option<BeamAxis> {
-    Some(BeamAxis { first: place.first()?, division: place.division.clone(), length: place.length() })
+fn axis_of(bodies: &LinkBodies) -> Option<BeamAxis> {
+    Some(BeamAxis { first: bodies.first()?, division: bodies.division.clone(), length: bodies.length() })
 }
 
 /// The key of a beam that is not straight and divided into sections, if it has one.
@@ -98,7 +98,7 @@ impl<'a> Check<'a> {
         let named =
             |link: &&Spanned<Link>| link.value.as_ref().and_then(|link| link.name.value.as_deref()) == Some(outer_name);
         let outer = links[..index].iter().find(named).and_then(|link| link.value.as_ref());
-        let (place, outer) = (place?, outer?);
+        let (bodies, outer) = (place?, outer?);
         match outer.beam.as_ref().map(|beam| &beam.value) {
             None => {
                 self.report(rule::slides_in_no_beam(given.beam.span, name, outer_name));
@@ -111,9 +111,9 @@ impl<'a> Check<'a> {
                 }
             }
         }
-        let behind = place.length() - overlap.clone();
+        let behind = bodies.length() - overlap.clone();
         let start = [behind, Value::ZERO, Value::ZERO];
-        Some((Attached::at(place.first(), Value::ZERO, start), Outer { place, overlap }))
+        Some((Attached::at(bodies.first(), Value::ZERO, start), Outer { place: bodies, overlap }))
     }
 
     /// A link that slides in a beam has a joint along x and no other place.
@@ -155,9 +155,9 @@ impl<'a> Check<'a> {
             [(&pads.front, "front"), (&pads.rear, "rear")]
                 .map(|(pad, which)| self.pad(pad, &format!("the {which} pad of `{name}`")))
         });
-        let (Some(Outer { place, overlap }), Some(pads)) = (outer, pads) else { return };
-        let [Some(outer), Some(inner)] = [&place, own].map(axis_of) else { return };
-        self.keep_overlap(&overlap, [&place, own], name, given.overlap.span);
+        let (Some(Outer { place: bodies, overlap }), Some(pads)) = (outer, pads) else { return };
+        let [Some(outer), Some(inner)] = [&bodies, own].map(axis_of) else { return };
+        self.keep_overlap(&overlap, [&bodies, own], name, given.overlap.span);
         if pads.iter().all(|[.., twist]| matches!(twist, Hold::No)) {
             self.report(rule::untwisted(given.pads.span, name));
         }

@@ -146,7 +146,7 @@ fn takes(code: &CCode, function: &str) -> Vec<String> {
     let declared = declared.split(')').next().unwrap();
     let taken = [("constants *c", "&c"), ("inputs *u", "&u")];
     let taken = taken.into_iter().filter(|(of, _)| declared.contains(&format!("const {name}_{of}")));
-    taken.map(|(_, given)| given.to_owned()).collect()
+    taken.map(|(_, text)| text.to_owned()).collect()
 }
 
 /// A program that calls all functions and prints their numbers, one per line.

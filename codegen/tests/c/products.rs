@@ -38,10 +38,10 @@ fn jacobian(program: &Program, function: &Function, parts: &[(Argument, Vec<f64>
     let alone = program.alone(function);
     let step = |argument: Argument| if argument == Argument::Inputs { Input::SLOTS } else { 1 };
     let places = parts.iter().flat_map(|(part, values)| (0..values.len()).step_by(step(*part)).map(|k| (*part, k)));
-    let along = |(by, place): (Argument, usize)| -> Vec<f64> {
+    let along = |(by, index): (Argument, usize)| -> Vec<f64> {
         let given =
             parts.iter().fold(Inputs::state(Dual(0.0, 0.0), vec![], vec![], vec![]), |given, (part, values)| {
-                let slope = |k: usize| f64::from(*part == by && k == place);
+                let slope = |k: usize| f64::from(*part == by && k == index);
                 given.with(*part, values.iter().enumerate().map(|(k, value)| Dual(*value, slope(k))).collect())
             });
         alone.evaluate(&alone.functions[0], &given).into_iter().map(|Dual(_, slope)| slope).collect()

@@ -69,8 +69,8 @@ fn mistakes_of_changes_are_in_the_file() {
     let checked = compile::check(&source).expect("a crane");
     let lines = |keys: Change| {
         let change = Change::keys([("links", Change::list([keys]))]);
-        let found = checked.spec.changed(&change).and_then(check).expect_err("a mistake");
-        found.lines().collect::<Vec<_>>()
+        let diagnostics = checked.spec.changed(&change).and_then(check).expect_err("a mistake");
+        diagnostics.lines().collect::<Vec<_>>()
     };
     let found = lines(Change::keys([("name", "rod".into()), ("mass", (-3.0).into())]));
     assert!(found.len() == 1 && found[0].starts_with("rod.yaml:6:11: "), "{found:?}");

@@ -64,7 +64,7 @@ fn chain(text: &str) -> Result<Chain, Vec<&'static str>> {
     let source = SourceFile::new("test.yaml", text);
     read(&source)
         .and_then(|spec| validate(&spec))
-        .map_err(|found| found.mistakes().iter().map(|mistake| mistake.code).collect())
+        .map_err(|diagnostics| diagnostics.mistakes().iter().map(|mistake| mistake.code).collect())
 }
 
 /// The code of the rule in a chain that refuses a value of its only parameter, if there is one.

@@ -168,7 +168,7 @@ pub(crate) fn simulate_fleet(
         cranes.iter().map(|(crane, start)| own_start(*crane, start, settings)).collect::<Result<Vec<_>, _>>()?;
     let joined = |of: fn(&InitialState) -> &Vec<f64>| -> Vec<f64> {
         let of_lane = |lane: usize| of(&starts[lane.min(starts.len() - 1)]);
-        (0..count * of_lane(0).len()).map(|place| of_lane(place % count)[place / count]).collect()
+        (0..count * of_lane(0).len()).map(|index| of_lane(index % count)[index / count]).collect()
     };
     let start = InitialState { q: joined(|start| &start.q), v: joined(|start| &start.v), x: joined(|start| &start.x) };
     let run = Simulation::new(fleet, start, settings).watch(watch)?;

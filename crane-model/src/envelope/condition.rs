@@ -105,36 +105,36 @@ impl Condition {
         limits: &Limits,
         reference: &[Vector3<f64>],
     ) -> Vec<Margin> {
-        let mut found = Margins { limits, description, all: Vec::new() };
+        let mut margins = Margins { limits, description, all: Vec::new() };
         for line in &self.lines {
             // Where the crane has tipped, rounding decides the sign of its margin.
             let value = if line.has_tipped { line.margin().min(-1.0) } else { line.margin() };
-            found.add(Limit::Tipping { feet: line.feet }, value, |least| value - least);
+            margins.add(Limit::Tipping { feet: line.feet }, value, |least| value - least);
         }
         for section in &self.sections {
             let limit = Limit::Utilisation { section: section.place.section };
             if let Some(utilisation) = section.utilisation {
-                found.at_most(limit, utilisation);
+                margins.at_most(limit, utilisation);
             }
         }
         for (drive, effort) in self.efforts.iter().enumerate() {
-            found.at_most(Limit::Effort { drive }, effort.abs());
+            margins.at_most(Limit::Effort { drive }, effort.abs());
         }
         for (point, (to, from)) in self.points.iter().zip(reference).enumerate() {
-            found.at_most(Limit::Deflection { point }, (to - from).norm());
+            margins.at_most(Limit::Deflection { point }, (to - from).norm());
         }
-        self.of_cylinders(&mut found);
-        self.of_contacts(&mut found);
-        self.of_ropes_and_stages(&mut found);
-        found.all
+        self.of_cylinders(&mut margins);
+        self.of_contacts(&mut margins);
+        self.of_ropes_and_stages(&mut margins);
+        margins.all
     }
 
     /// Pressures and strokes.
-    fn of_cylinders(&self, found: &mut Margins<'_>) {
-        for (cylinder, (info, state)) in found.description.cylinders.iter().zip(&self.cylinders).enumerate() {
+    fn of_cylinders(&self, margins: &mut Margins<'_>) {
+        for (cylinder, (info, state)) in margins.description.cylinders.iter().zip(&self.cylinders).enumerate() {
             for (rod, pressure) in [false, true].into_iter().zip(state.pressures) {
-                found.at_most(Limit::Pressure { cylinder, rod }, pressure);
-                found.at_most(Limit::Pump { cylinder, rod }, pressure);
+                margins.at_most(Limit::Pressure { cylinder, rod }, pressure);
+                margins.at_most(Limit::Pump { cylinder, rod }, pressure);
             }
             for (extended, sign) in [(false, 1.0), (true, -1.0)] {
                 // A linkage that cannot be assembled has no length.
@@ -142,44 +142,44 @@ impl Condition {
                     left if left.is_nan() => f64::NEG_INFINITY,
                     left => left + ROUNDING,
                 };
-                found.add(Limit::Stroke { cylinder, extended }, state.length, left);
+                margins.add(Limit::Stroke { cylinder, extended }, state.length, left);
             }
         }
     }
 
     /// Stops that are touched, feet that slide or carry nothing.
-    fn of_contacts(&self, found: &mut Margins<'_>) {
-        let Description { drives, stops, .. } = found.description;
+    fn of_contacts(&self, margins: &mut Margins<'_>) {
+        let Description { drives, stops, .. } = margins.description;
         for (&coordinate, effort) in stops.iter().zip(&self.stops) {
             if drives.iter().any(|drive| drive.coordinate == coordinate) {
-                found.add(Limit::Stop { coordinate }, *effort, |none| if *effort == none { 1.0 } else { -1.0 });
+                margins.add(Limit::Stop { coordinate }, *effort, |none| if *effort == none { 1.0 } else { -1.0 });
             }
         }
         let longest = self.utilisations_of_friction.iter().min_by(|a, b| a.1.total_cmp(&b.1));
         if let Some(&(foot, utilisation)) = longest {
-            found.at_most(Limit::Sliding { foot }, utilisation);
+            margins.at_most(Limit::Sliding { foot }, utilisation);
         }
         let sizes = self.feet.iter().map(|[force, _]| force.abs());
         let mean = (sizes.sum::<f64>() / self.feet.len().max(1) as f64).max(f64::MIN_POSITIVE);
         for (foot, &[force, gap]) in self.feet.iter().enumerate() {
             // A gap has another unit than a force: only its sign counts.
-            found.add(Limit::LiftOff { foot }, force, |none| if gap > 0.0 { -gap } else { (force - none) / mean });
-            found.at_most(Limit::Ground { foot }, force.max(0.0));
+            margins.add(Limit::LiftOff { foot }, force, |none| if gap > 0.0 { -gap } else { (force - none) / mean });
+            margins.at_most(Limit::Ground { foot }, force.max(0.0));
         }
     }
 
     /// Ropes without tension or with too much, and stages that have left their outer beams.
-    fn of_ropes_and_stages(&self, found: &mut Margins<'_>) {
-        for (rope, (info, &force)) in found.description.connectors.iter().zip(&self.connectors).enumerate() {
+    fn of_ropes_and_stages(&self, margins: &mut Margins<'_>) {
+        for (rope, (info, &force)) in margins.description.connectors.iter().zip(&self.connectors).enumerate() {
             if info.is_rope {
                 let left = |none: f64| if force > none { (force - none) / UNIT_OF_TENSION } else { -1.0 };
-                found.add(Limit::Slack { rope }, force, left);
-                found.at_most(Limit::Tension { rope }, force);
+                margins.add(Limit::Slack { rope }, force, left);
+                margins.at_most(Limit::Tension { rope }, force);
             }
         }
         for &(body, [overlap, left]) in &self.overlaps {
-            found.add(Limit::Overlap { body, pushed: false }, overlap, |none| overlap - none);
-            found.add(Limit::Overlap { body, pushed: true }, left, |none| left - none);
+            margins.add(Limit::Overlap { body, pushed: false }, overlap, |none| overlap - none);
+            margins.add(Limit::Overlap { body, pushed: true }, left, |none| left - none);
         }
     }
 }

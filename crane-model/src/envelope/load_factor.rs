@@ -73,7 +73,7 @@ pub fn load_factor(crane: &mut dyn DynCrane, parameter: usize) -> Option<LoadFac
         };
         let more = best.load * (1.0 + A_LITTLE);
         let near = posed.find_next([best.load, more], &best.at.q);
-        let status = near.as_ref().map_or(Status::NotConverged, |found| found.status.clone());
+        let status = near.as_ref().map_or(Status::NotConverged, |equilibrium| equilibrium.status.clone());
         let beyond = (status != Status::Converged).then_some(status);
         followed = Some(Followed { factor: best.load, beyond });
         // Newton's method may miss a pose that is there: if the crane rests with a little more, its path goes on.

@@ -104,30 +104,30 @@ impl Posed<'_> {
     /// near its beginning, since a crane that snaps through goes far. `det K` shows a pass between two places, however little of the motion it is: it dips. Besides,
     /// Newton's method contracts from the first step on, or the way back ends where it began. What does not hold for a bent path holds in shorter strides.
     pub(super) fn find_next(&mut self, [from, to]: [f64; 2], begin: &[f64]) -> Option<Equilibrium> {
-        let found = self.with_load(to)?.find_near(begin)?;
-        if found.steps() <= 1 {
-            return Some(found);
+        let equilibrium = self.with_load(to)?.find_near(begin)?;
+        if equilibrium.steps() <= 1 {
+            return Some(equilibrium);
         }
-        let between = |part: f64| begin.iter().zip(&found.q).map(|(a, b)| a + part * (b - a)).collect::<Vec<f64>>();
+        let between = |part: f64| begin.iter().zip(&equilibrium.q).map(|(a, b)| a + part * (b - a)).collect::<Vec<f64>>();
         let mut stiffness = |part: f64| self.with_load(from + part * (to - from))?.stiffness_at(&between(part));
         let least = stiffness(0.0)?.min(stiffness(1.0)?) - DIP.ln();
         if BETWEEN.iter().any(|part| stiffness(*part).is_none_or(|between| between < least)) {
             return None;
         }
-        if !found.contracts() {
-            let back = self.with_load(from)?.find_near(&found.q)?;
+        if !equilibrium.contracts() {
+            let back = self.with_load(from)?.find_near(&equilibrium.q)?;
             let distance = |q: &[f64]| begin.iter().zip(q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            if distance(&back.q) > CLOSE * distance(&found.q) {
+            if distance(&back.q) > CLOSE * distance(&equilibrium.q) {
                 return None;
             }
         }
         self.with_load(to)?;
-        Some(found)
+        Some(equilibrium)
     }
 
     /// The crane at rest as statics found it, if it stands there.
-    pub(super) fn condition(&self, found: Equilibrium) -> Option<Condition> {
-        let condition = found.is_stable().then(|| Condition::at(self.crane, found.q, self.positions))?;
+    pub(super) fn condition(&self, equilibrium: Equilibrium) -> Option<Condition> {
+        let condition = equilibrium.is_stable().then(|| Condition::at(self.crane, equilibrium.q, self.positions))?;
         // Nothing holds a stage that stands crosswise in its beam.
         let is_held = condition.overlaps.iter().all(|(_, [inside, _])| *inside > f64::NEG_INFINITY);
         is_held.then_some(condition)
@@ -137,8 +137,8 @@ impl Posed<'_> {
     pub(super) fn change_load(&mut self, from: f64, to: f64, begin: Condition) -> Option<Condition> {
         let at = |part: f64| if part < 1.0 { from + part * (to - from) } else { to };
         let mut step = |begin: &Condition, parts: [f64; 2]| {
-            let found = self.find_next(parts.map(at), &begin.q)?;
-            self.condition(found)
+            let equilibrium = self.find_next(parts.map(at), &begin.q)?;
+            self.condition(equilibrium)
         };
         advance(begin, [SHORTEST, 1.0], &mut step)
     }

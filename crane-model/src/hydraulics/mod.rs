@@ -228,8 +228,8 @@ impl StatefulForces for Hydraulics {
         let (mut taken, mut taken_by_pump) = (0.0, 0.0);
         let pump = self.pump;
         let of_pump = pump.map_or(0.0, |pump| pump.bulk_modulus / pump.info.volume);
-        for (place, cylinder) in self.cylinders.iter().enumerate() {
-            let first = STATES * place;
+        for (index, cylinder) in self.cylinders.iter().enumerate() {
+            let first = STATES * index;
             let (here, wanted) = (self.here[cylinder.index], self.wanted[cylinder.index]);
             let u = x[first + 2];
             let flows = flows(&cylinder.valve, u, [x[first], x[first + 1]], p_s, cylinder.info.back_pressure);
@@ -286,7 +286,7 @@ impl StatefulForces for Hydraulics {
                 matrix[(last, first + 2)] = -of_pump * flows.by_spool[fed];
                 matrix[(first + 2, last)] = command.by_pump / lag;
             }
-            forces[place] = force;
+            forces[index] = force;
         }
         let (delivered, slope) = pump.map_or((0.0, 0.0), |pump| pump.flow(p_s));
         rates[last] = of_pump * (delivered - taken);

@@ -20,10 +20,10 @@ pub(crate) struct Servo {
 /// The servos of a crane.
 pub(crate) fn servos(description: &Description) -> Vec<Servo> {
     let oil = Hydraulics::new(description);
-    let servo = |(place, cylinder): (usize, &ValveCylinder)| {
+    let servo = |(index, cylinder): (usize, &ValveCylinder)| {
         let (valve, cylinder) = (&cylinder.valve, cylinder.index);
         (!valve.commanded && valve.gain > 0.0).then_some(Servo {
-            spool: STATES * place + 2,
+            spool: STATES * index + 2,
             cylinder,
             gain: valve.gain,
         })
@@ -46,11 +46,11 @@ pub(crate) fn spool(crane: &dyn DynCrane, moment: &StateAt<'_>, drive: usize) ->
     /// Differences of the motion, m or rad, and m/s or rad/s.
     const DIFFERENCE: f64 = 1e-6;
     let mut oil = Hydraulics::new(crane.description());
-    let place = oil.cylinders.iter().position(|cylinder| cylinder.info.drive == drive)?;
+    let index = oil.cylinders.iter().position(|cylinder| cylinder.info.drive == drive)?;
     oil.measure(crane, moment.t, moment.q, moment.v);
-    let cylinder = oil.cylinders[place].clone();
+    let cylinder = oil.cylinders[index].clone();
     let (x, here) = (moment.x, oil.here[cylinder.index]);
-    let (sides, pump) = ([x[STATES * place], x[STATES * place + 1]], x[oil.len() - 1]);
+    let (sides, pump) = ([x[STATES * index], x[STATES * index + 1]], x[oil.len() - 1]);
     let n = moment.q.len();
     let command = |motion: [f64; 2]| {
         let (mut q, mut v) = (vec![0.0; n], vec![0.0; n]);
@@ -69,7 +69,7 @@ pub(crate) fn spool(crane: &dyn DynCrane, moment: &StateAt<'_>, drive: usize) ->
         (after - before) / (2.0 * DIFFERENCE)
     });
     let by_motion = (!cylinder.valve.commanded).then_some(by_motion);
-    Some(Spool { state: STATES * place + 2, lag: cylinder.valve.lag, by_motion })
+    Some(Spool { state: STATES * index + 2, lag: cylinder.valve.lag, by_motion })
 }
 
 impl Hydraulics {

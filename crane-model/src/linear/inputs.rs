@@ -146,8 +146,8 @@ pub(super) fn effect(
         added[drive] = sign * effort;
         quantities_with(crane, moment, &added)
     });
-    for (found, output) in effect.outputs.iter_mut().zip(outputs) {
-        *found += 0.5 * (after[output.index] - before[output.index]);
+    for (value, output) in effect.outputs.iter_mut().zip(outputs) {
+        *value += 0.5 * (after[output.index] - before[output.index]);
     }
     Ok(effect)
 }

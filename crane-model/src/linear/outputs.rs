@@ -33,12 +33,12 @@ enum Known {
 }
 
 fn known(crane: &dyn DynCrane, output: &Output) -> Option<Known> {
-    let (description, n, place) = (crane.description(), crane.size(), output.index - 1);
-    if place < n {
-        return Some(Known::Coordinate(place));
+    let (description, n, index) = (crane.description(), crane.size(), output.index - 1);
+    if index < n {
+        return Some(Known::Coordinate(index));
     }
-    if place < 2 * n {
-        return Some(Known::Rate(place - n));
+    if index < 2 * n {
+        return Some(Known::Rate(index - n));
     }
     let (point, axis) = output.column.name.rsplit_once('_')?;
     let axis = ["x", "y", "z"].iter().position(|known| *known == axis)?;

@@ -32,8 +32,8 @@ pub(crate) fn geometric_stiffness(crane: &dyn DynCrane, q: &[f64], multipliers: 
     for &j in &spanned {
         matrix[(j, j)] = along(&[j]);
     }
-    for (place, &j) in spanned.iter().enumerate() {
-        for &i in spanned[..place].iter().filter(|i| is_spanned(&[**i, j])) {
+    for (index, &j) in spanned.iter().enumerate() {
+        for &i in spanned[..index].iter().filter(|i| is_spanned(&[**i, j])) {
             let both = along(&[i, j]);
             let entry = 0.5 * (both - matrix[(i, i)] - matrix[(j, j)]);
             (matrix[(i, j)], matrix[(j, i)]) = (entry, entry);

@@ -77,11 +77,11 @@ impl Directions {
         let mut joints = Vec::new();
         let (mut equation, mut rows) = (0, 0);
         for (index, joint) in all.iter().enumerate() {
-            let own = equation..equation + joint.equations.len();
-            equation = own.end;
+            let range = equation..equation + joint.equations.len();
+            equation = range.end;
             if closes_linkage(joint) {
-                let count = if joint.is_rod() { 3 } else { own.len() };
-                joints.push((index, own, rows..rows + count));
+                let count = if joint.is_rod() { 3 } else { range.len() };
+                joints.push((index, range, rows..rows + count));
                 rows += count;
             }
         }
@@ -92,7 +92,7 @@ impl Directions {
         let mut matrix = DMatrix::zeros(rows, n);
         let mut squares = vec![0.0; n];
         let (mut extra, mut size) = (Vec::new(), 0.0_f64);
-        for ((index, own, rows), (apart, velocities)) in joints.iter().zip(&motions) {
+        for ((index, range, rows), (apart, velocities)) in joints.iter().zip(&motions) {
             let joint = &all[*index];
             let greatest = (0..n).filter(|j| turns(*j)).map(|j| velocities[j].norm()).fold(0.0, f64::max);
             let scale = if greatest > 0.0 { greatest } else { 1.0 };
@@ -101,7 +101,7 @@ impl Directions {
             for j in 0..n {
                 let entry = |equation: usize| loops.jacobian()[equation * n + j];
                 let (mut forces, mut moments) = (0.0, 0.0);
-                for (row, (equation, info)) in rows.clone().zip(own.clone().zip(&*joint.equations)) {
+                for (row, (equation, info)) in rows.clone().zip(range.clone().zip(&*joint.equations)) {
                     let (unit, sum) = if info.is_moment { (1.0, &mut moments) } else { (scale, &mut forces) };
                     matrix[(row, j)] = entry(equation) / unit;
                     *sum += matrix[(row, j)] * matrix[(row, j)];
@@ -218,8 +218,8 @@ fn inverse(products: &DMatrix<f64>, zeros: usize) -> DMatrix<f64> {
     let mut order: Vec<usize> = (0..eigenvalues.len()).collect();
     order.sort_by(|&a, &b| eigenvalues[a].total_cmp(&eigenvalues[b]));
     let mut inverses = DVector::zeros(eigenvalues.len());
-    for &place in &order[zeros.min(order.len())..] {
-        inverses[place] = 1.0 / eigenvalues[place].max(ROUNDING);
+    for &index in &order[zeros.min(order.len())..] {
+        inverses[index] = 1.0 / eigenvalues[index].max(ROUNDING);
     }
     &eigenvectors * DMatrix::from_diagonal(&inverses) * eigenvectors.transpose()
 }

@@ -107,8 +107,8 @@ impl Independence {
     /// Whether the equations chosen are as independent as before, and those left out still depend on them.
     fn are_good(&mut self) -> bool {
         self.least = 1.0;
-        for place in 0..self.kept.len() {
-            let next = self.kept[place];
+        for index in 0..self.kept.len() {
+            let next = self.kept[index];
             let pivot = self.pivot(next);
             self.least = self.least.min(pivot);
             if pivot.is_nan() || pivot < DEPENDENT || !self.remaining[next] {
@@ -161,13 +161,13 @@ impl Independence {
         }
         let mut first = 0;
         for group in groups {
-            let own = first..first + group.len();
-            let lengths = own.clone().zip(&*group).filter(|(_, is_moment)| !**is_moment);
+            let range = first..first + group.len();
+            let lengths = range.clone().zip(&*group).filter(|(_, is_moment)| !**is_moment);
             let greatest = lengths.map(|(row, _)| gram[row * size + row].max(0.0).sqrt()).fold(0.0, f64::max);
-            for (row, is_moment) in own.clone().zip(group) {
+            for (row, is_moment) in range.clone().zip(group) {
                 units[row] = if *is_moment { 1.0 } else { greatest };
             }
-            first = own.end;
+            first = range.end;
         }
         for i in 0..size {
             remaining[i] = units[i] > 0.0;

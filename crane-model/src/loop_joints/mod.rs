@@ -227,7 +227,7 @@ impl Loops {
     fn find_runs(&mut self) {
         let Self { n, cranes, jacobian, spans, runs, runs_of, .. } = self;
         runs.clear();
-        for ((row, span), own) in spans.iter().enumerate().zip(runs_of) {
+        for ((row, span), range) in spans.iter().enumerate().zip(runs_of) {
             let first = runs.len();
             for at in span.clone().step_by(*cranes) {
                 if jacobian[row * *n + at..][..*cranes].iter().any(|entry| *entry != 0.0) {
@@ -237,7 +237,7 @@ impl Loops {
                     }
                 }
             }
-            *own = first..runs.len();
+            *range = first..runs.len();
         }
     }
 
@@ -259,9 +259,9 @@ impl Loops {
             own.places.clear();
         }
         for &row in &*order {
-            let (place, mut is_kept) = (rows.len(), false);
+            let (index, mut is_kept) = (rows.len(), false);
             for own in each.iter_mut().filter(|own| own.independence.is_kept(row)) {
-                own.places.push(place);
+                own.places.push(index);
                 is_kept = true;
             }
             if is_kept {
@@ -282,8 +282,8 @@ impl Loops {
         let Self { n, jacobian, rows, columns, opened, .. } = self;
         opened.fill(f64::NAN);
         for &row in &*rows {
-            let own = row * *n..(row + 1) * *n;
-            solve(&jacobian[own.clone()], &mut columns[own]);
+            let range = row * *n..(row + 1) * *n;
+            solve(&jacobian[range.clone()], &mut columns[range]);
         }
         self.factorise_schur();
     }
@@ -296,8 +296,8 @@ impl Loops {
         for (i, &row) in rows.iter().enumerate() {
             let (own, mut first) = (&jacobian[row * n..][..n], None);
             for (j, &column) in rows[..=i].iter().enumerate() {
-                let place = coupled.len() + j - first.unwrap_or(j);
-                let product = &mut products[place * cranes..][..cranes];
+                let index = coupled.len() + j - first.unwrap_or(j);
+                let product = &mut products[index * cranes..][..cranes];
                 product.fill(0.0);
                 for run in &runs[runs_of[row].clone()] {
                     interleaved::add_dot(&own[run.clone()], &columns[column * n..][run.clone()], product);

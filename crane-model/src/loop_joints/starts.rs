@@ -92,12 +92,12 @@ impl Loops {
         let mut first = 0;
         let mut worst: Option<Open> = None;
         for joint in crane.loop_joints() {
-            let own = first..first + joint.equations.len();
-            first = own.end;
-            let forces = own.clone().zip(&*joint.equations).filter(|(_, info)| !info.is_moment);
+            let range = first..first + joint.equations.len();
+            first = range.end;
+            let forces = range.clone().zip(&*joint.equations).filter(|(_, info)| !info.is_moment);
             let entries = forces.flat_map(|(row, _)| &self.jacobian[row * self.n..][..self.n]);
             let size = entries.fold(0.0, |size: f64, entry| size.max(entry.abs()));
-            for (equation, info) in own.zip(&*joint.equations) {
+            for (equation, info) in range.zip(&*joint.equations) {
                 let gap = self.states[equation].x.abs();
                 let allowed = SHARE * if info.is_moment || size == 0.0 { 1.0 } else { size };
                 // The comparison is false for NaN.

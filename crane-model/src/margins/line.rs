@@ -61,7 +61,7 @@ impl<'a> Line<'a> {
         }
         let mut line = Self { sigma, of, points: Vec::with_capacity(2 * omegas.len()), follows: true };
         let coarse: Vec<Point> = omegas.into_iter().map(|omega| line.at(omega)).collect();
-        let highest = last(&coarse, LEAST).map_or(0.0, |place| coarse[place].omega);
+        let highest = last(&coarse, LEAST).map_or(0.0, |index| coarse[index].omega);
         line.follows = of.of.delay * highest <= FOLLOWED;
         for next in coarse {
             match line.points.last().copied() {
@@ -148,9 +148,9 @@ impl<'a> Line<'a> {
 
     /// The highest frequency with |L| ≥ `least`, rad/s; 0 if there is none.
     pub fn highest(&self, least: f64) -> f64 {
-        let Some(place) = last(&self.points, least) else { return 0.0 };
+        let Some(index) = last(&self.points, least) else { return 0.0 };
         let size = |l: Complex<f64>| (l.norm() / least).ln();
-        self.points.get(place + 1).map_or(f64::INFINITY, |next| self.crossing([self.points[place], *next], &size).omega)
+        self.points.get(index + 1).map_or(f64::INFINITY, |next| self.crossing([self.points[index], *next], &size).omega)
     }
 }
 

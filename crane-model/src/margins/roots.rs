@@ -35,14 +35,14 @@ pub fn roots(open: &Open<'_>, highest: f64, axis: impl Iterator<Item = (f64, Com
     let starts = closed(open, highest).unwrap_or_else(|| open.plant.poles().to_vec());
     let mut found: Vec<[Complex<f64>; 2]> = Vec::new();
     let near = |a: Complex<f64>, b: Complex<f64>, within: f64| (a - b).norm() <= within * a.norm().max(b.norm());
-    for (place, start) in starts.iter().copied().chain(chain).enumerate() {
+    for (index, start) in starts.iter().copied().chain(chain).enumerate() {
         if start.im > STARTS_BEYOND * highest && start.re < 0.0 {
             continue;
         }
         let Some(root) = root(open, start, SLOWEST * highest) else { continue };
         // Two starts in one place are two motions, such as those of two equal cylinders.
         let is_known = |[begun, known]: &[Complex<f64>; 2]| {
-            near(root, *known, SAME) && !(place < starts.len() && near(start, *begun, SAME_START))
+            near(root, *known, SAME) && !(index < starts.len() && near(start, *begun, SAME_START))
         };
         if (root.im <= BEYOND * highest || root.re > 0.0) && !found.iter().any(is_known) {
             found.push([start, root]);

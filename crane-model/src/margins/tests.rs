@@ -20,8 +20,8 @@ fn found(plant: &Plant, of: &Loop) -> Margins {
 }
 
 /// Bisections and golden sections end at rounding; minima are flat to its square root.
-fn assert_close(what: &str, found: f64, expected: f64) {
-    assert!((found - expected).abs() < 1e-7 * expected.abs().max(1e-3), "{what}: {found} for {expected}");
+fn assert_close(what: &str, value: f64, expected: f64) {
+    assert!((value - expected).abs() < 1e-7 * expected.abs().max(1e-3), "{what}: {value} for {expected}");
 }
 
 /// `L = k e^(−Ts)/s`: a phase margin of 90° − k T, a gain margin of π/(2 k T), stable up to k T = π/2.
@@ -137,9 +137,9 @@ fn margins_of_a_timber_crane_are_those_published() {
         let margins = found(&body, &Loop { p: d, i: p, delay: 0.065, lag, ..Loop::default() });
         let near = |found: f64, printed: f64, digit: f64| (found - printed).abs() <= digit;
         assert_eq!(margins.stable, stable, "{mass}");
-        let (found, at) = margins.phase.unwrap();
+        let (value, at) = margins.phase.unwrap();
         // Of the unstable loop another of several crossings is printed.
-        assert!(!stable || near(found.to_degrees(), phase, 1.0), "{mass}: {} for {phase}", found.to_degrees());
+        assert!(!stable || near(value.to_degrees(), phase, 1.0), "{mass}: {} for {phase}", value.to_degrees());
         // The first crossing is printed, the one that counts is that of the phase.
         assert!(!stable || near(at, crossover, 0.011), "{mass}: {at} for {crossover}");
         let (factor, _) = if stable { margins.gain } else { margins.reduction }.unwrap();
@@ -292,14 +292,14 @@ fn the_count_is_that_of_eigenvalues() {
         if left != right {
             continue; // On the line of the count.
         }
-        let found = margins(&plant, &of).unwrap();
-        assert_eq!(found.unstable, left, "case {case}: {of:?}");
-        counts[usize::from(found.stable)] += 1;
+        let margins = margins(&plant, &of).unwrap();
+        assert_eq!(margins.unstable, left, "case {case}: {of:?}");
+        counts[usize::from(margins.stable)] += 1;
         complex += usize::from(plant.poles().iter().any(|pole| pole.re > 1e-4 && pole.im > 0.0));
-        if let Some(root) = found.closed.unwrap_or_else(|why| panic!("case {case}: {why}: {of:?}")) {
+        if let Some(root) = margins.closed.unwrap_or_else(|why| panic!("case {case}: {why}: {of:?}")) {
             let loop_gain = of.response(root) * plant.response(root);
             assert!((loop_gain + 1.0).norm() < 1e-6, "case {case}: {root}");
-            assert_eq!(found.damping().unwrap() < 0.0, !found.stable, "case {case}: {root}");
+            assert_eq!(margins.damping().unwrap() < 0.0, !margins.stable, "case {case}: {root}");
         }
     }
     // Both kinds are among them.

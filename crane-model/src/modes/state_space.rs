@@ -137,10 +137,10 @@ fn leave_out_dry_friction(crane: &dyn DynCrane, moment: &StateAt<'_>, motions: &
         all[joint][1]
     };
     for &joint in crane.description().frictions.iter().filter(|&&joint| moment.v[joint] == 0.0) {
-        let Some(place) = motions.unknowns.iter().position(|&unknown| unknown == joint) else { continue };
+        let Some(index) = motions.unknowns.iter().position(|&unknown| unknown == joint) else { continue };
         // A stop that the joint leaves this fast damps it no more: it does in the other direction.
         let fast = damping(joint, FAST).max(damping(joint, -FAST));
-        motions.damping[(place, place)] -= damping(joint, 0.0) - fast;
+        motions.damping[(index, index)] -= damping(joint, 0.0) - fast;
     }
 }
 
@@ -180,8 +180,8 @@ fn turn(
         for (force, (row, (before, after))) in here.iter().zip(rows.iter().zip(before.iter().zip(&after))) {
             let curvature = |of: usize| (after.entry(of) - before.entry(of)) / (2.0 * DIFFERENCE);
             let faster = (after.along(moment.v) - before.along(moment.v)) / (2.0 * DIFFERENCE);
-            for (place, &of) in motions.unknowns.iter().enumerate() {
-                motions.stiffness[(place, column)] -=
+            for (index, &of) in motions.unknowns.iter().enumerate() {
+                motions.stiffness[(index, column)] -=
                     force.force * curvature(of) + row.entry(of) * force.by_speed * faster;
             }
             for (state, by_speed) in force.rates_by_speed.iter().enumerate().take(force.count) {

@@ -21,9 +21,9 @@ impl Extremes {
         let Some(values) = table.values(name) else { return Self::default() };
         let mut times = table.rows.iter().map(|row| row[0]).zip(values);
         let Some((t, first)) = times.next() else { return Self::default() };
-        let mut found = Self::at(t, first);
-        times.for_each(|(t, value)| found.widen(t, value));
-        found
+        let mut extremes = Self::at(t, first);
+        times.for_each(|(t, value)| extremes.widen(t, value));
+        extremes
     }
 
     /// Extremes of several columns, in one pass.
@@ -35,9 +35,9 @@ impl Extremes {
             |place: &Option<usize>| place.map_or_else(Self::default, |column| Self::at(first[0], first[column]));
         let mut found: Vec<Self> = places.iter().map(begin).collect();
         for row in rest {
-            for (found, place) in found.iter_mut().zip(&places) {
+            for (extremes, place) in found.iter_mut().zip(&places) {
                 if let Some(column) = place {
-                    found.widen(row[0], row[*column]);
+                    extremes.widen(row[0], row[*column]);
                 }
             }
         }

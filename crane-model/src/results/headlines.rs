@@ -96,9 +96,9 @@ mod tests {
             ("oil", "Pa", Size::Peak, 0.0),
             ("tip", "m", Size::Range, 4e-6),
         ] {
-            let found = Kind::new(vec![name.into()], unit, size).noise(&table, name, force);
+            let value = Kind::new(vec![name.into()], unit, size).noise(&table, name, force);
             // Products of two numbers, each rounded.
-            assert!((found - noise).abs() <= 1e-15 * noise, "{name}: {found}");
+            assert!((value - noise).abs() <= 1e-15 * noise, "{name}: {value}");
         }
     }
 }

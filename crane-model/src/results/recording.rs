@@ -143,8 +143,8 @@ impl<'a> FleetRecording<'a> {
         let width = of_all.len();
         // Columns of all cranes have the same names, those of the first crane first; the time is one for all.
         let mut named: HashMap<String, Vec<usize>> = HashMap::new();
-        for (place, Column { name, .. }) in of_all.into_iter().enumerate() {
-            named.entry(name).or_default().push(place);
+        for (index, Column { name, .. }) in of_all.into_iter().enumerate() {
+            named.entry(name).or_default().push(index);
         }
         let of_crane = |crane: usize| {
             let place = |column: &Column| named[&column.name].get(crane).copied().unwrap_or_default();
@@ -172,7 +172,7 @@ impl<'a> FleetRecording<'a> {
         let mut table = Table { columns: self.columns.clone(), rows };
         let of_crane = |(crane, places): (usize, &Vec<usize>)| {
             for (row, of_all) in table.rows.iter_mut().zip(self.numbers.chunks_exact(self.width)) {
-                row.iter_mut().zip(places).for_each(|(number, place)| *number = of_all[*place]);
+                row.iter_mut().zip(places).for_each(|(number, index)| *number = of_all[*index]);
             }
             of_table(crane, &table)
         };

@@ -224,13 +224,13 @@ pub fn check(
         // The wall time of the finer run is not reported.
         match record(crane, start, &finer, &mut |_| proceed(settings.duration)) {
             Ok(finer) => {
-                let mut found = Verification::new(&recorded.table, &finer.table, description.coordinates.len());
+                let mut verification = Verification::new(&recorded.table, &finer.table, description.coordinates.len());
                 if grows {
                     // An unstable loop makes small differences grow; this is not chaos.
-                    found.divergence = None;
+                    verification.divergence = None;
                 }
-                recorded.cautions.extend(found.cautions(&recorded.table));
-                recorded.verification = Some(found);
+                recorded.cautions.extend(verification.cautions(&recorded.table));
+                recorded.verification = Some(verification);
             }
             Err(failed) => {
                 recorded

@@ -119,9 +119,9 @@ pub(super) fn iterate(
 }
 
 /// Whether the iteration ended, by rounding, with more than an equilibrium leaves.
-pub(super) fn is_hidden(equations: &Equations<'_>, found: &Equilibrium) -> bool {
-    let q = DVector::from_column_slice(&found.q);
-    found.residual() > ROUNDED && exceeds_weights(equations, &q, &equations.residual(&q))
+pub(super) fn is_hidden(equations: &Equations<'_>, equilibrium: &Equilibrium) -> bool {
+    let q = DVector::from_column_slice(&equilibrium.q);
+    equilibrium.residual() > ROUNDED && exceeds_weights(equations, &q, &equations.residual(&q))
 }
 
 /// Whether rounding hides how far a pose is from equilibrium, which then cannot be found.

@@ -36,14 +36,14 @@ impl RestSearch<'_> {
 
     /// The pose at rest, or how the search from the guess ended. `near`: positions of the drives, and the pose in which the crane rests there.
     pub fn find(&self, near: Option<(&[f64], &[f64])>) -> Equilibrium {
-        if let Some(found) = near.and_then(|(from, q)| self.walk(from, q)) {
-            return found;
+        if let Some(equilibrium) = near.and_then(|(from, q)| self.walk(from, q)) {
+            return equilibrium;
         }
-        let found = self.find_from_guess();
-        if found.is_stable() {
-            return found;
+        let equilibrium = self.find_from_guess();
+        if equilibrium.is_stable() {
+            return equilibrium;
         }
-        self.walk_from_begin().unwrap_or(found)
+        self.walk_from_begin().unwrap_or(equilibrium)
     }
 
     /// The pose at rest found from the guess, or how the search ended: as for a spec whose drives hold these positions.
@@ -57,8 +57,8 @@ impl RestSearch<'_> {
         if begin == self.positions {
             return None;
         }
-        let found = RestSearch { positions: &begin, ..*self }.find_from_guess();
-        if found.is_stable() { self.walk(&begin, &found.q) } else { None }
+        let equilibrium = RestSearch { positions: &begin, ..*self }.find_from_guess();
+        if equilibrium.is_stable() { self.walk(&begin, &equilibrium.q) } else { None }
     }
 
     /// The end of a walk from the pose `q`, in which the drives are at `from`; `None` if the crane does not rest on the way, however short the

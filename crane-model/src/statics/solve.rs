@@ -94,8 +94,8 @@ impl<'a> Problem<'a> {
             guess = self.crane.guess();
             &guess
         };
-        let found = search(&mut self.equations(), from, &self.settings);
-        with_tipped_status(&*self.crane, self.t, from, found)
+        let equilibrium = search(&mut self.equations(), from, &self.settings);
+        with_tipped_status(&*self.crane, self.t, from, equilibrium)
     }
 
     /// `ln det K` at the pose `q`, in equilibrium or not, of the factors of Cholesky, which are a tenth of the work of a Newton step; `None` if a direction has a
@@ -133,13 +133,13 @@ fn search(equations: &mut Equations<'_>, q: &[f64], settings: &Settings) -> Equi
         let history = vec![Iteration { residual: f64::INFINITY, fraction: 0.0 }];
         return Equilibrium { status: Status::NotConverged, q: start.as_slice().to_vec(), history, load_steps: None };
     }
-    let mut found = search_from(equations, &start, settings);
-    let is_found = matches!(found.status, Status::Converged | Status::Unstable { .. });
-    if is_found && newton::is_hidden(equations, &found) {
-        found.status = Status::NotConverged;
+    let mut equilibrium = search_from(equations, &start, settings);
+    let is_found = matches!(equilibrium.status, Status::Converged | Status::Unstable { .. });
+    if is_found && newton::is_hidden(equations, &equilibrium) {
+        equilibrium.status = Status::NotConverged;
     }
-    equations.prescribe(&mut found.q);
-    with_sliding_status(equations, found)
+    equations.prescribe(&mut equilibrium.q);
+    with_sliding_status(equations, equilibrium)
 }
 
 /// Newton's method, with bold and with cautious steps, then continuation.
@@ -164,22 +164,22 @@ fn search_from(equations: &Equations<'_>, start: &DVector<f64>, settings: &Setti
         ends.find(|end| end.status == Status::Converged)
     };
     let found = continuation::follow(equations, start, settings.load_steps, &scale, &mut arrive);
-    found.map_or(first, |found| Equilibrium { load_steps: Some(load_steps), ..found })
+    found.map_or(first, |equilibrium| Equilibrium { load_steps: Some(load_steps), ..equilibrium })
 }
 
 /// A search that ended where every foot on the ground slides ended for that reason.
-fn with_sliding_status(equations: &Equations<'_>, found: Equilibrium) -> Equilibrium {
+fn with_sliding_status(equations: &Equations<'_>, equilibrium: Equilibrium) -> Equilibrium {
     let description = equations.crane.description();
-    if found.is_stable() || !description.has_feet() {
-        return found;
+    if equilibrium.is_stable() || !description.has_feet() {
+        return equilibrium;
     }
-    let feet = Feet::at_rest(equations.crane, &found.q);
+    let feet = Feet::at_rest(equations.crane, &equilibrium.q);
     let pressing: Vec<_> = feet.utilisations_on_the_ground().collect();
     if pressing.is_empty() || pressing.iter().any(|(_, utilisation)| *utilisation < 1.0) {
-        return found;
+        return equilibrium;
     }
     let name = |(foot, _): &(usize, f64)| description.supports[*foot].name.clone();
-    Equilibrium { status: Status::Slides { feet: pressing.iter().map(name).collect() }, ..found }
+    Equilibrium { status: Status::Slides { feet: pressing.iter().map(name).collect() }, ..equilibrium }
 }
 
 /// Rotation by which an equilibrium may differ from the guess and still be the intended one, rad.
@@ -187,21 +187,21 @@ const MEANT: f64 = 0.5;
 
 /// Whether there may be a stable equilibrium that Newton's method did not find: no equilibrium was found, or an unstable one
 /// far from the guess, from a guess that is stable itself, or of a crane on feet.
-fn missed(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings, found: &Equilibrium) -> bool {
+fn missed(equations: &Equations<'_>, start: &DVector<f64>, settings: &Settings, equilibrium: &Equilibrium) -> bool {
     let description = equations.crane.description();
     let meant = || {
         let kinds = description.coordinates.iter().map(|coordinate| coordinate.kind);
-        let turned = kinds.zip(start.iter().zip(&found.q)).filter(|(kind, _)| *kind == CoordinateKind::Rotation);
+        let turned = kinds.zip(start.iter().zip(&equilibrium.q)).filter(|(kind, _)| *kind == CoordinateKind::Rotation);
         turned.map(|(_, (from, to))| (to - from).abs()).fold(0.0, f64::max) < MEANT
     };
     let stable = || {
         Tangent::new(&equations.stiffness(start), description)
             .is_some_and(|tangent| tangent.status(description) == Status::Converged)
     };
-    match found.status {
+    match equilibrium.status {
         Status::Converged | Status::TipsOver { .. } | Status::Floats | Status::Overflow => false,
         // Also reported for poses where no step helps; at an equilibrium it is exact.
-        Status::Singular { .. } => !found.at_rest(settings),
+        Status::Singular { .. } => !equilibrium.at_rest(settings),
         Status::NotConverged | Status::Slides { .. } => true,
         // A crane that has tipped half off its feet may balance there, besides standing on them.
         Status::Unstable { .. } => !meant() || stable() || description.supports.iter().any(|support| support.one_sided),

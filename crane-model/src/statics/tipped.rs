@@ -16,16 +16,16 @@ const AT_REST: f64 = 1e-6;
 
 /// The equilibrium at time `t`, s, that was found from the pose `from`; its status becomes that the crane tips over, or that it floats, if it has
 /// feet that lift and the pose found is not stable or its base is not upright.
-pub(crate) fn with_tipped_status(crane: &dyn DynCrane, t: f64, from: &[f64], found: Equilibrium) -> Equilibrium {
+pub(crate) fn with_tipped_status(crane: &dyn DynCrane, t: f64, from: &[f64], equilibrium: Equilibrium) -> Equilibrium {
     let description = crane.description();
     let feet = || description.supports.iter().filter(|support| support.one_sided);
-    let fell = description.has_tipped(from, &found.q);
-    let stands = found.is_stable() || found.status == Status::NotConverged && found.residual() < AT_REST;
+    let fell = description.has_tipped(from, &equilibrium.q);
+    let stands = equilibrium.is_stable() || equilibrium.status == Status::NotConverged && equilibrium.residual() < AT_REST;
     if feet().next().is_none() || stands && !fell {
-        return found;
+        return equilibrium;
     }
     if upwards(crane, t, from).is_some_and(|force| force > 0.0) {
-        return Equilibrium { status: Status::Floats, ..found };
+        return Equilibrium { status: Status::Floats, ..equilibrium };
     }
     let rest = vec![0.0; from.len()];
     let lines = lines(crane, t, from, &rest, &rest);
@@ -35,11 +35,11 @@ pub(crate) fn with_tipped_status(crane: &dyn DynCrane, t: f64, from: &[f64], fou
         }
         // In a plane there are no tipping lines: name the feet that still press.
         None if fell => {
-            let reactions = crane.support_reactions_at(&found.q, &rest);
+            let reactions = crane.support_reactions_at(&equilibrium.q, &rest);
             let pressing = description.supports.iter().zip(&reactions).filter(|(_, force)| force.z > 0.0);
             pressing.map(|(support, _)| support.name.clone()).collect()
         }
-        _ => return found,
+        _ => return equilibrium,
     };
-    Equilibrium { status: Status::TipsOver { feet: names }, ..found }
+    Equilibrium { status: Status::TipsOver { feet: names }, ..equilibrium }
 }

@@ -180,9 +180,9 @@ fn every_pose_is_as_a_crane_alone() {
         let mut slack = |load: f64| {
             DynCrane::set_parameter(&mut alone, 0, load).unwrap();
             let crane: &dyn DynCrane = &alone;
-            let found = Problem::new(crane).from(near).solve();
-            assert!(found.is_stable());
-            let (rest, q) = (vec![0.0; found.q.len()], &found.q);
+            let equilibrium = Problem::new(crane).from(near).solve();
+            assert!(equilibrium.is_stable());
+            let (rest, q) = (vec![0.0; equilibrium.q.len()], &equilibrium.q);
             let lines = crane_model::tipping::lines(crane, 0.0, q, &rest, &rest);
             let margin = crane_model::tipping::governing(&lines).unwrap().margin();
             let wrenches = crane.internal_forces_at(0.0, q, &rest, &rest);

@@ -137,7 +137,7 @@ fn efforts_of_drives_are_right_to_a_thousandth_at_the_default_tolerance() {
         let exact = peaks(crane.as_ref(), Method::Bdf, 1e-8);
         for method in [Method::Bdf, Method::Rosenbrock] {
             let found = peaks(crane.as_ref(), method, Settings::from_description(description).tolerance);
-            let errors: Vec<f64> = found.iter().zip(&exact).map(|(found, exact)| found / exact - 1.0).collect();
+            let errors: Vec<f64> = found.iter().zip(&exact).map(|(value, exact)| value / exact - 1.0).collect();
             println!("{} {method}: {errors:?}", description.name);
             // Where feet lift, joints rub and valves open, forces have kinks.
             let allowed = if description.has_valves() { 5e-3 } else { 1e-3 };

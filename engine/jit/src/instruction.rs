@@ -56,11 +56,11 @@ impl Instruction {
     /// The places of the frame that it reads or writes.
     pub fn places(&self) -> impl Iterator<Item = Location> {
         let of = |operand: Operand| match operand {
-            Operand::Memory(place) => Some(place),
+            Operand::Memory(location) => Some(location),
             Operand::Register(_) => None,
         };
         let places = match *self {
-            Instruction::Load(_, place) | Instruction::Store(_, place) => [Some(place), None, None],
+            Instruction::Load(_, location) | Instruction::Store(_, location) => [Some(location), None, None],
             Instruction::Compute { operands, .. } => operands.map(of),
             Instruction::Result(..) | Instruction::Move(..) | Instruction::Begin(_) | Instruction::End => [None; 3],
         };
@@ -84,11 +84,11 @@ impl Instruction {
             assert!(first >= 0 && last >= 0, "a place before the frame");
             usize::try_from(first.max(last)).map_or(usize::MAX, |last| last + 1)
         };
-        for place in self.places() {
-            *places = end(place).max(*places);
+        for location in self.places() {
+            *places = end(location).max(*places);
         }
-        if let Instruction::Result(_, place) = self {
-            *results = end(*place).max(*results);
+        if let Instruction::Result(_, location) = self {
+            *results = end(*location).max(*results);
         }
     }
 }

@@ -77,8 +77,8 @@ impl Operation {
     }
 
     /// Another node as an operand.
-    pub fn replace(&mut self, place: usize, node: Node) {
-        self.operands[place] = node;
+    pub fn replace(&mut self, index: usize, node: Node) {
+        self.operands[index] = node;
     }
 }
 
@@ -169,9 +169,9 @@ impl OperationWriter<'_> {
             Step::Max([a, b]) => self.plain(Kind::Maximum, [*a, *b, *b]),
             Step::Sqrt(a) => self.plain(Kind::Root, [*a, *a, *a]),
             Step::Select(operands) => self.plain(Kind::Choice, *operands),
-            Step::Store { place, value } => {
+            Step::Store { place: index, value } => {
                 let node = self.positive(self.signed(*value));
-                self.operations.actions.push(Action::Store(*place, node));
+                self.operations.actions.push(Action::Store(*index, node));
                 return;
             }
             Step::Pause { arguments, makes } => {

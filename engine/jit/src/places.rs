@@ -62,8 +62,8 @@ impl Places {
     }
 
     /// The place of a node, one that was reserved.
-    pub fn set(&mut self, node: Node, place: u32) {
-        self.of[node as usize] = Some(place);
+    pub fn set(&mut self, node: Node, index: u32) {
+        self.of[node as usize] = Some(index);
     }
 
     /// From here on places are given and released; there are as many nodes.
@@ -84,22 +84,22 @@ impl Places {
 
     /// The place of a node, now if it has none.
     pub fn give(&mut self, node: Node) -> u32 {
-        if let Some(place) = self.of[node as usize] {
-            return place;
+        if let Some(index) = self.of[node as usize] {
+            return index;
         }
-        let place = match self.free.pop() {
-            Some(Reverse(place)) => place,
+        let index = match self.free.pop() {
+            Some(Reverse(index)) => index,
             None => self.reserve(1),
         };
-        self.of[node as usize] = Some(place);
-        place
+        self.of[node as usize] = Some(index);
+        index
     }
 
     /// The node is not used again.
     pub fn release(&mut self, node: Node) {
-        if let Some(place) = self.of[node as usize].filter(|place| *place >= self.reusable_from) {
+        if let Some(index) = self.of[node as usize].filter(|index| *index >= self.reusable_from) {
             self.of[node as usize] = None;
-            self.free.push(Reverse(place));
+            self.free.push(Reverse(index));
         }
     }
 }

@@ -114,8 +114,8 @@ fn repeat(actions: &[Action], made: &[Option<usize>], [start, period, most]: [us
     for at in 0..period {
         let first: &Operation = operation(0, at)?;
         let mut own = Vec::with_capacity(3);
-        for place in 0..first.operands().len() {
-            let nodes = (0..iterations).map_while(|k| operation(k, at).map(|operation| operation.operands()[place]));
+        for index in 0..first.operands().len() {
+            let nodes = (0..iterations).map_while(|k| operation(k, at).map(|operation| operation.operands()[index]));
             let (source, valid) = source(&nodes.collect::<Vec<_>>(), made, [start, period])?;
             if valid < LEAST_ITERATIONS {
                 return None;

@@ -8,12 +8,12 @@ use crane_jit::{Code, Rounding, Step, StraightLine, Width};
 /// `x ← x y + x`, so often that a thread is interrupted in between.
 const STEPS: u32 = 2000;
 
-fn line(place: u32) -> StraightLine {
+fn line(index: u32) -> StraightLine {
     let last = 2 + STEPS - 1;
     let steps = (0..STEPS).map(|at| Step::MulAdd([if at == 0 { 0 } else { at + 1 }, 1, 0]));
     StraightLine {
         given: vec![None; 2],
-        steps: steps.chain([Step::Store { place, value: last }]).collect(),
+        steps: steps.chain([Step::Store { place: index, value: last }]).collect(),
         results: 1,
     }
 }
@@ -33,7 +33,7 @@ fn threads_share_code() {
                 for call in 0..500 {
                     let (x, y) = (1.0 + f64::from(thread), 0.5 + 1e-4 * f64::from(call));
                     frame[..2].copy_from_slice(&[x, y]);
-                    code.numbers().for_each(|(place, number)| frame[place] = number);
+                    code.numbers().for_each(|(index, number)| frame[index] = number);
                     let mut result = [f64::NAN];
                     code.run(0, &mut frame, &mut result);
                     assert_eq!(result[0].to_bits(), expected(x, y).to_bits(), "thread {thread}, call {call}");
@@ -62,9 +62,9 @@ fn slices_that_are_too_short_are_refused() {
 /// Displacements have 32 bits or fewer: a result further away would be written elsewhere.
 #[test]
 fn results_beyond_displacements_have_no_code() {
-    for place in [1 << 20, 1 << 25, 1 << 28, 1 << 29, u32::MAX] {
+    for index in [1 << 20, 1 << 25, 1 << 28, 1 << 29, u32::MAX] {
         for width in [Width::One, Width::Eight] {
-            assert!(Code::compile(&line(place), Rounding::Separate, width).is_none(), "{width:?}, {place}");
+            assert!(Code::compile(&line(index), Rounding::Separate, width).is_none(), "{width:?}, {index}");
         }
     }
 }

@@ -155,8 +155,8 @@ fn apply(step: &Step, rounding: Rounding, values: &mut Vec<f64>, results: &mut [
         Step::Sqrt(a) => of(a).sqrt(),
         Step::Select([a, b, _]) if of(a) > 0.0 => of(b),
         Step::Select([_, _, c]) => of(c),
-        Step::Store { place, value } => {
-            if let Some(result) = results.get_mut(place as usize) {
+        Step::Store { place: index, value } => {
+            if let Some(result) = results.get_mut(index as usize) {
                 *result = of(value);
             }
             return;
@@ -180,12 +180,12 @@ fn evaluate(line: &StraightLine, rounding: Rounding, given: &[f64]) -> Vec<f64> 
 /// The results of machine code, lane by lane.
 fn run(code: &Code, line: &StraightLine, lanes: usize, given: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut frame = vec![0.0; code.places().max(line.given.len()) * lanes];
-    for (place, number) in code.numbers() {
-        frame[place * lanes..(place + 1) * lanes].fill(number);
+    for (index, number) in code.numbers() {
+        frame[index * lanes..(index + 1) * lanes].fill(number);
     }
-    for place in 0..line.given.len() {
+    for index in 0..line.given.len() {
         for lane in 0..lanes {
-            frame[place * lanes + lane] = given[lane][place];
+            frame[index * lanes + lane] = given[lane][index];
         }
     }
     let mut results = vec![f64::NAN; line.results * lanes];
@@ -202,8 +202,8 @@ fn run(code: &Code, line: &StraightLine, lanes: usize, given: &[Vec<f64>]) -> Ve
 }
 
 fn assert_same(what: &str, computed: &[f64], expected: &[f64]) {
-    for (place, (x, y)) in computed.iter().zip(expected).enumerate() {
-        assert!(x == y || x.is_nan() && y.is_nan(), "{what}: result {place} is {x:e} instead of {y:e}");
+    for (index, (x, y)) in computed.iter().zip(expected).enumerate() {
+        assert!(x == y || x.is_nan() && y.is_nan(), "{what}: result {index} is {x:e} instead of {y:e}");
     }
 }
 

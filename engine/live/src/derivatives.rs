@@ -139,9 +139,9 @@ mod tests {
 
     fn assert_close(what: &str, one: &[f64], other: &[f64], tolerance: f64) {
         let size = other.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-        for (place, (one, other)) in one.iter().zip(other).enumerate() {
+        for (index, (one, other)) in one.iter().zip(other).enumerate() {
             let off = (one - other).abs();
-            assert!(off <= tolerance * size, "{what}, {place}: {one} for {other}, off by {off:e} of {size:e}");
+            assert!(off <= tolerance * size, "{what}, {index}: {one} for {other}, off by {off:e} of {size:e}");
         }
     }
 

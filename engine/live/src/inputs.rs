@@ -46,11 +46,11 @@ impl Inputs {
 
     /// All numbers.
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
-        (0..self.0.len()).map(|place| self.number(place))
+        (0..self.0.len()).map(|index| self.number(index))
     }
 
-    fn number(&self, place: usize) -> f64 {
-        f64::from_bits(self.0[place].load(Ordering::Relaxed))
+    fn number(&self, index: usize) -> f64 {
+        f64::from_bits(self.0[index].load(Ordering::Relaxed))
     }
 }
 

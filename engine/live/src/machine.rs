@@ -64,7 +64,7 @@ pub trait Batch: Number<Columns: Columns<Lane = f64>> {
     /// Made of the numbers at each place.
     fn from_lanes(number: impl Fn(usize) -> f64) -> Self;
     /// The number at a place below [`LANES`](Self::LANES).
-    fn lane(&self, place: usize) -> f64;
+    fn lane(&self, index: usize) -> f64;
 }
 
 /// Number of angles, or arguments of Stumpff's functions, processed at a time.
@@ -143,8 +143,8 @@ impl Batch for f64x8 {
     fn from_lanes(number: impl Fn(usize) -> f64) -> Self {
         f64x8::new(std::array::from_fn(number))
     }
-    fn lane(&self, place: usize) -> f64 {
-        self.as_array()[place]
+    fn lane(&self, index: usize) -> f64 {
+        self.as_array()[index]
     }
 }
 
@@ -238,8 +238,8 @@ impl<T: Number> Arguments<'_, T> {
         let mut register = code.fixed.len();
         for inputs in &code.inputs {
             match self.given(inputs) {
-                Some(given) => given.iter().enumerate().for_each(|(place, number)| take(register + place, *number)),
-                None => (0..inputs.count).for_each(|place| take(register + place, T::splat(0.0))),
+                Some(given) => given.iter().enumerate().for_each(|(index, number)| take(register + index, *number)),
+                None => (0..inputs.count).for_each(|index| take(register + index, T::splat(0.0))),
             }
             register += inputs.count;
         }

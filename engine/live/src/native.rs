@@ -85,7 +85,7 @@ impl Native {
             Form::Slopes => (tangent(&line, &pauses), pauses, Width::Eight),
         };
         let numbers = line.given.iter().enumerate().skip(given[1]);
-        let numbers = numbers.filter_map(|(place, number)| Some((place, (*number)?))).collect();
+        let numbers = numbers.filter_map(|(index, number)| Some((index, (*number)?))).collect();
         Some(Self {
             code: MachineCode::compile(&line, ROUNDING, width)?,
             pauses,
@@ -111,7 +111,7 @@ impl Native {
         let mut frame = vec![T::splat(0.0); self.code.places().max(given + self.numbers.len())];
         frame.iter_mut().zip(fixed).take(fixed_places).for_each(|(place, number)| *place = *number);
         let known = self.numbers.iter().copied().chain(self.code.numbers());
-        known.for_each(|(place, number)| frame[place] = T::splat(number));
+        known.for_each(|(index, number)| frame[index] = T::splat(number));
         frame
     }
 
@@ -160,12 +160,12 @@ impl Native {
             frame.resize(self.code.places().max(2 * given + self.numbers.len()), zero);
             results.resize(2 * self.results, zero);
             let known = self.numbers.iter().copied().chain(self.code.numbers());
-            known.for_each(|(place, number)| frame[place] = f64x8::splat(number));
-            for (place, number) in registers.iter().enumerate().take(fixed) {
-                [frame[place], frame[given + place]] = number.cells();
+            known.for_each(|(index, number)| frame[index] = f64x8::splat(number));
+            for (index, number) in registers.iter().enumerate().take(fixed) {
+                [frame[index], frame[given + index]] = number.cells();
             }
         }
-        arguments.each(code, |place, number| [frame[place], frame[given + place]] = number.cells());
+        arguments.each(code, |index, number| [frame[index], frame[given + index]] = number.cells());
         for part in 0..self.code.parts() {
             self.code.run(part, f64x8::flat(frame), f64x8::flat(results));
             if let (Some(pause), Some(kind)) = (self.code.pause(part), self.pauses.get(part)) {
@@ -185,11 +185,11 @@ fn compute_with_slopes(kind: Kind, pause: Pause, frame: &mut [f64x8]) {
     let Pause { arguments, reads, values, makes } = pause;
     let (arguments, values) = frame[arguments..values + makes].split_at_mut(reads);
     for first in (0..reads).step_by(ANGLES) {
-        let own = first..reads.min(first + ANGLES);
+        let range = first..reads.min(first + ANGLES);
         let mut eight = [0.0; ANGLES];
-        eight.iter_mut().zip(&arguments[own.clone()]).for_each(|(place, argument)| *place = argument.as_array()[0]);
+        eight.iter_mut().zip(&arguments[range.clone()]).for_each(|(place, argument)| *place = argument.as_array()[0]);
         let mut write = |order: usize, computed: &[f64; ANGLES]| {
-            let places = &mut values[order * reads + own.start..order * reads + own.end];
+            let places = &mut values[order * reads + range.start..order * reads + range.end];
             places.iter_mut().zip(computed).for_each(|(place, number)| *place = f64x8::splat(*number));
         };
         match kind {
@@ -209,11 +209,11 @@ fn compute<T: Number>(kind: Kind, pause: Pause, frame: &mut [T]) {
     let Pause { arguments, reads, values, makes } = pause;
     let (arguments, values) = frame[arguments..values + makes].split_at_mut(reads);
     for first in (0..reads).step_by(ANGLES) {
-        let own = first..reads.min(first + ANGLES);
+        let range = first..reads.min(first + ANGLES);
         let mut eight = [T::splat(0.0); ANGLES];
-        eight.iter_mut().zip(&arguments[own.clone()]).for_each(|(place, argument)| *place = *argument);
+        eight.iter_mut().zip(&arguments[range.clone()]).for_each(|(place, argument)| *place = *argument);
         let mut write = |order: usize, computed: &[T; ANGLES]| {
-            let Range { start, end } = own;
+            let Range { start, end } = range;
             values[order * reads + start..order * reads + end].copy_from_slice(&computed[..end - start]);
         };
         match kind {

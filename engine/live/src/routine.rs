@@ -31,7 +31,7 @@ impl Routine {
         let is_zero = |slot: &ExprId| matches!(program.op(*slot), Op::Constant(number) if number.value() == 0.0);
         let slots = function.outputs.iter().enumerate();
         Self {
-            places: slots.filter(|(_, slot)| !is_zero(slot)).map(|(place, _)| place).collect(),
+            places: slots.filter(|(_, slot)| !is_zero(slot)).map(|(index, _)| index).collect(),
             shape: function.shape.clone(),
             code: code.unwrap_or_default(),
             constants: assemble_constants(&alone, &constants),

@@ -43,9 +43,9 @@ pub fn with_sines(line: &StraightLine, pauses: &[Kind]) -> (StraightLine, Vec<Ki
                     }
                 }
             },
-            Step::Store { place, value } => {
+            Step::Store { place: index, value } => {
                 let value = writer.of[*value as usize];
-                writer.line.steps.push(Step::Store { place: *place, value });
+                writer.line.steps.push(Step::Store { place: *index, value });
             }
             step => {
                 let moved = writer.moved(step);
@@ -239,14 +239,14 @@ mod tests {
     #[test]
     fn sines_in_a_line_have_the_bits_of_the_runtime() {
         let steps = [Step::Pause { arguments: vec![0], makes: 2 }];
-        let stores = (0..2).map(|place| Step::Store { place, value: place + 1 });
+        let stores = (0..2).map(|index| Step::Store { place: index, value: index + 1 });
         let line = StraightLine { given: vec![None], steps: steps.into_iter().chain(stores).collect(), results: 2 };
         let (line, others) = with_sines(&line, &[Kind::Angle]);
         assert!(others.is_empty(), "no other pause");
         let Some(code) = Code::compile(&line, ROUNDING, Width::Eight) else { return };
         let mut frame = vec![f64x8::splat(0.0); code.places().max(line.given.len())];
-        let numbers = line.given.iter().enumerate().filter_map(|(place, number)| Some((place, (*number)?)));
-        numbers.chain(code.numbers()).for_each(|(place, number)| frame[place] = f64x8::splat(number));
+        let numbers = line.given.iter().enumerate().filter_map(|(index, number)| Some((index, (*number)?)));
+        numbers.chain(code.numbers()).for_each(|(index, number)| frame[index] = f64x8::splat(number));
         let mut compared = 0;
         for k in -40_000_i32..40_000 {
             // Multiples of an eighth turn, their neighbours, and angles up to the largest.

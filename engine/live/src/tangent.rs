@@ -33,7 +33,7 @@ pub fn tangent(line: &StraightLine, pauses: &[Kind]) -> StraightLine {
     let mut pauses = pauses.iter();
     for step in &line.steps {
         match step {
-            Step::Store { place, value } => writer.store(*place, *value, line.results),
+            Step::Store { place: index, value } => writer.store(*index, *value, line.results),
             Step::Pause { arguments, .. } => {
                 let kind = pauses.next().copied().unwrap_or(Kind::Exp);
                 writer.pause(kind, arguments);
@@ -158,11 +158,11 @@ impl TangentWriter {
         Number { value, slopes: self.select(is_first, a.slopes, b.slopes) }
     }
 
-    fn store(&mut self, place: u32, stored: Value, results: usize) {
+    fn store(&mut self, index: u32, stored: Value, results: usize) {
         let Number { value: own, slopes } = self.number_of(stored);
-        self.line.steps.push(Step::Store { place, value: own });
-        let place = place + value(results);
-        self.line.steps.push(Step::Store { place, value: self.or_zero(slopes) });
+        self.line.steps.push(Step::Store { place: index, value: own });
+        let index = index + value(results);
+        self.line.steps.push(Step::Store { place: index, value: self.or_zero(slopes) });
     }
 
     /// Functions of several arguments at once, order by order.

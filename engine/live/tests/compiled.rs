@@ -212,9 +212,9 @@ fn parameters_keep_the_rules() {
 fn statics_and_modes_agree() {
     for (compiled, live) in both().into_iter().filter(|(compiled, _)| compiled.description().statics) {
         let live: &dyn DynCrane = &live;
-        let [expected, found] = [&*compiled, live].map(|crane| crane.equilibrium(&statics::Settings::default()));
-        assert_eq!(found.status, expected.status);
-        assert_close(&found.q, &expected.q);
+        let [expected, equilibrium] = [&*compiled, live].map(|crane| crane.equilibrium(&statics::Settings::default()));
+        assert_eq!(equilibrium.status, expected.status);
+        assert_close(&equilibrium.q, &expected.q);
         let frequencies = |crane: &dyn DynCrane| -> Vec<f64> {
             let modes = modes::undamped(&crane.small_motions_at(&expected.q)).unwrap();
             modes.iter().map(|mode| mode.frequency().unwrap()).collect()

@@ -65,9 +65,9 @@ fn joined(each: &[Vec<f64>], parts: &[usize], len: usize) -> Vec<f64> {
     let mut first = 0;
     let mut all = Vec::new();
     for part in parts {
-        let own = first * len..(first + part) * len;
+        let range = first * len..(first + part) * len;
         for numbers in each {
-            all.extend_from_slice(&numbers[own.clone()]);
+            all.extend_from_slice(&numbers[range.clone()]);
         }
         first += part;
     }

@@ -126,11 +126,11 @@ fn compare<T: Parts>(what: &str, chain: &Chain, program: &Program, routine: &Rou
     assert_eq!(bytes.is_some(), compiles, "{what}");
     let interpreted = results::<T>(chain, program, routine, Routine::interpret);
     let native = results::<T>(chain, program, routine, Routine::run);
-    for (place, (x, y)) in native.iter().zip(&interpreted).enumerate() {
+    for (index, (x, y)) in native.iter().zip(&interpreted).enumerate() {
         // Slopes that are not finite depend on whether zeros are multiplied.
-        let is_slope = place % T::PARTS > 0 && T::PARTS > f64x8::PARTS;
+        let is_slope = index % T::PARTS > 0 && T::PARTS > f64x8::PARTS;
         let is_same = x == y || x.is_nan() && y.is_nan() || is_slope && !y.is_finite();
-        assert!(is_same, "{what}, number {place}: {x:e} instead of {y:e}");
+        assert!(is_same, "{what}, number {index}: {x:e} instead of {y:e}");
     }
     interpreted.iter().filter(|x| x.is_finite() && **x != 0.0).count()
 }

@@ -30,15 +30,15 @@ pub fn check_changes(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let mut all: Vec<usize> = (0..crane.parameters().len()).collect();
     rng.shuffle(&mut all);
     all.truncate(CHANGED);
-    let found = sensitivity(&crane, &all, &SETTINGS).ok()?;
+    let sensitivity = sensitivity(&crane, &all, &SETTINGS).ok()?;
     let mut wrong = Vec::new();
-    for (place, &parameter) in found.parameters.iter().enumerate() {
+    for (index, &parameter) in sensitivity.parameters.iter().enumerate() {
         let mut fewest: Option<Vec<String>> = None;
         for step in STEPS {
             let value = crane.parameters()[parameter];
             let step = step * if value == 0.0 { 1.0 } else { value.abs() };
             let Some(both) = around(&crane, parameter, step) else { continue };
-            let off = differences(&crane, &found, place, &both, step);
+            let off = differences(&crane, &sensitivity, index, &both, step);
             if fewest.as_ref().is_none_or(|known| off.len() < known.len()) {
                 fewest = Some(off);
             }
@@ -61,26 +61,26 @@ fn around(crane: &LiveCrane, parameter: usize, step: f64) -> Option<[Sensitivity
 /// Outputs whose derivative is not their difference.
 fn differences(
     crane: &LiveCrane,
-    found: &Sensitivity,
+    sensitivity: &Sensitivity,
     place: usize,
     [before, after]: &[Sensitivity; 2],
     step: f64,
 ) -> Vec<String> {
-    let value = crane.parameters()[found.parameters[place]];
+    let value = crane.parameters()[sensitivity.parameters[place]];
     let per = if value == 0.0 { 1.0 } else { value.abs() };
     // Frequencies that coincide part, and what governs may change.
-    let coincide = found.notes.iter().any(|note| note.contains("coincide"));
+    let coincide = sensitivity.notes.iter().any(|note| note.contains("coincide"));
     let counts = |index: usize| {
-        let output = &found.outputs[index];
+        let output = &sensitivity.outputs[index];
         let [one, other] =
-            [before, after].map(|found| found.index_of(&output.name).map(|index| &found.outputs[index].place));
+            [before, after].map(|sensitivity| sensitivity.index_of(&output.name).map(|index| &sensitivity.outputs[index].place));
         let is_same = one.is_some() && one == other && one == Some(&output.place);
         if output.group == Group::Frequencies { !coincide } else { is_same }
     };
     let slope = |index: usize| {
-        let name = &found.outputs[index].name;
+        let name = &sensitivity.outputs[index].name;
         let [one, other] =
-            [before, after].map(|found| found.index_of(name).map_or(f64::NAN, |index| found.values[index]));
+            [before, after].map(|sensitivity| sensitivity.index_of(name).map_or(f64::NAN, |index| sensitivity.values[index]));
         (other - one) / (2.0 * step)
     };
     // Where nothing twists a telescope, rotations and torques of its pads are rounding beside their ways and forces.
@@ -94,20 +94,20 @@ fn differences(
     let largest = |group: Group, unit: &'static str| {
         let is_alike =
             |output: &Output| joined(output.group) == joined(group) && kind(group, output.unit) == kind(group, unit);
-        let alike = found.outputs.iter().enumerate().filter(|(_, output)| is_alike(output));
+        let alike = sensitivity.outputs.iter().enumerate().filter(|(_, output)| is_alike(output));
         alike.fold(0.0, |size: f64, (index, _)| {
-            size.max(found.derivatives[place][index].abs()).max(found.values[index].abs() / per)
+            size.max(sensitivity.derivatives[place][index].abs()).max(sensitivity.values[index].abs() / per)
         })
     };
     let wrong = |index: usize| {
-        let (own, expected, output) = (found.derivatives[place][index], slope(index), &found.outputs[index]);
-        let size = expected.abs() + 0.1 * found.values[index].abs() / per;
+        let (own, expected, output) = (sensitivity.derivatives[place][index], slope(index), &sensitivity.outputs[index]);
+        let size = expected.abs() + 0.1 * sensitivity.values[index].abs() / per;
         let off = (own - expected).abs();
         let allowed = TOLERANCE * size + OF_LARGEST * largest(output.group, output.unit);
-        let name = &crane.description().parameters[found.parameters[place]].name;
+        let name = &crane.description().parameters[sensitivity.parameters[place]].name;
         (off > allowed || off.is_nan()).then(|| {
-            format!("{} by {name}: {own:.9e} against {expected:.9e}, of {:.6e}", output.name, found.values[index])
+            format!("{} by {name}: {own:.9e} against {expected:.9e}, of {:.6e}", output.name, sensitivity.values[index])
         })
     };
-    (0..found.outputs.len()).filter(|&index| counts(index)).filter_map(wrong).collect()
+    (0..sensitivity.outputs.len()).filter(|&index| counts(index)).filter_map(wrong).collect()
 }

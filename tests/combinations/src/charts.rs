@@ -53,9 +53,9 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let mut stands = |value: f64| -> Option<Condition> {
         held.set_parameter(held_load, value).ok()?;
         let whole: &dyn DynCrane = &held;
-        let found = whole.equilibrium(&Settings::default());
+        let equilibrium = whole.equilibrium(&Settings::default());
         let positions: Vec<f64> = whole.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
-        found.is_stable().then(|| Condition::at(whole, found.q, &positions))
+        equilibrium.is_stable().then(|| Condition::at(whole, equilibrium.q, &positions))
     };
     // Near the load that tips, statics may find another pose, or miss the one that is left.
     let written = crane.parameters()[load];
@@ -98,9 +98,9 @@ fn limits_nothing(crane: &LiveCrane, load: usize) -> Option<String> {
         crane.set_parameter(load, value).ok()?;
         let whole: &dyn DynCrane = &crane;
         let positions: Vec<f64> = whole.drive_motions_at(0.0).iter().map(|[position, _]| *position).collect();
-        let found = RestSearch { crane: whole, positions: &positions }.find_near(near)?;
-        let limits = Condition::at(whole, found.q.clone(), &positions).exceeded(whole, &limits);
-        Some((found.q, limits.into_iter().map(|margin| margin.limit).collect::<Vec<Limit>>()))
+        let equilibrium = RestSearch { crane: whole, positions: &positions }.find_near(near)?;
+        let limits = Condition::at(whole, equilibrium.q.clone(), &positions).exceeded(whole, &limits);
+        Some((equilibrium.q, limits.into_iter().map(|margin| margin.limit).collect::<Vec<Limit>>()))
     };
     let mut beyond = |value: f64| {
         let (q, limits) = rest(value, &loaded.q)?;

@@ -78,15 +78,15 @@ fn differences(table: &Table, rows: &[Vec<f64>]) -> Vec<String> {
     let mut wrong = Vec::new();
     // The error of the balance of energy has no size of its own.
     let compared = table.columns.iter().take(rows[0].len()).enumerate();
-    for (place, column) in compared.filter(|(_, column)| column.kind != ColumnKind::Balance) {
+    for (index, column) in compared.filter(|(_, column)| column.kind != ColumnKind::Balance) {
         let alike = |other: usize| table.columns[other].unit == column.unit && table.columns[other].kind == column.kind;
         let of_kind = (0..rows[0].len()).filter(|other| alike(*other));
         let size = of_kind.flat_map(|other| rows.iter().map(move |row| row[other].abs())).fold(1e-6, f64::max);
         for (one, other) in table.rows.iter().zip(rows) {
-            let off = (one[place] - other[place]).abs();
+            let off = (one[index] - other[index]).abs();
             if off.is_nan() || off > TOLERANCE[1] * size {
                 let (t, unit) = (one[0], &column.unit);
-                wrong.push(format!("{} at {t} s: {:e} against {:e} {unit}", column.name, one[place], other[place]));
+                wrong.push(format!("{} at {t} s: {:e} against {:e} {unit}", column.name, one[index], other[index]));
                 break;
             }
         }

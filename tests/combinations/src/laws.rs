@@ -69,9 +69,9 @@ fn results_are_named(crane: &LiveCrane, _: &[f64], _: &mut Rng) -> Option<Result
 fn stable_is_stable(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<(), String>> {
     let whole: &dyn DynCrane = crane;
     let settings = statics::Settings::default();
-    let found = whole.equilibrium(&settings);
+    let equilibrium = whole.equilibrium(&settings);
     // Of stiff cranes, rounding may be more than the tolerance.
-    if let Err(error) = close("residual that is told", found.residual(), 0.0, 1.0, 10.0 * settings.tolerance) {
+    if let Err(error) = close("residual that is told", equilibrium.residual(), 0.0, 1.0, 10.0 * settings.tolerance) {
         return Some(Err(error));
     }
     // What is left over, beside what drives and springs would exert far from it; loops transmit forces besides.
@@ -84,8 +84,8 @@ fn stable_is_stable(crane: &LiveCrane, q: &[f64], _: &mut Rng) -> Option<Result<
     let size = residual(&vec![0.0; q.len()]).iter().fold(1.0, |size: f64, f| size.max(f.abs()));
     let prescribed = crane.description().prescribed();
     let left = residual(q).into_iter().zip(&crane.description().coordinates).enumerate();
-    for (_, (left, own)) in left.filter(|(j, _)| !prescribed.contains(j) && !crane.chain().has_loops()) {
-        if let Err(error) = close(&format!("what is left over along {}", own.name), left, 0.0, size, 1e-7) {
+    for (_, (left, coordinate)) in left.filter(|(j, _)| !prescribed.contains(j) && !crane.chain().has_loops()) {
+        if let Err(error) = close(&format!("what is left over along {}", coordinate.name), left, 0.0, size, 1e-7) {
             return Some(Err(error));
         }
     }
@@ -305,9 +305,9 @@ fn springs_carry(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Resul
     let mut applies = false;
     for (t, q, v, a) in motions {
         let moments = whole.element_moments_at(&q, &v);
-        let of_elements = description.coordinates.iter().enumerate().filter(|(_, own)| own.role.is_element());
+        let of_elements = description.coordinates.iter().enumerate().filter(|(_, coordinate)| coordinate.role.is_element());
         let springs: Vec<(&str, f64)> =
-            of_elements.zip(moments).map(|((_, own), moment)| (own.name.as_str(), moment)).collect();
+            of_elements.zip(moments).map(|((_, coordinate), moment)| (coordinate.name.as_str(), moment)).collect();
         let transforms = whole.transforms_at(&q);
         let (x, sizes) = (whole.section_places_at(&q), whole.body_sizes_at());
         // The force of a pad bends the spring of its section by the mean of the moment, which jumps or kinks there.
@@ -549,13 +549,13 @@ fn statics_follow_drives(crane: &LiveCrane, q: &[f64], rng: &mut Rng) -> Option<
     let rest = |by: f64| {
         let mut moved = positions.clone();
         moved[drive] += by;
-        RestSearch { crane: whole, positions: &moved }.find_near(q).map(|found| found.q)
+        RestSearch { crane: whole, positions: &moved }.find_near(q).map(|equilibrium| equilibrium.q)
     };
     let differ = |step: f64| {
         let Some((less, more)) = rest(-step).zip(rest(step)) else { return Ok(()) };
-        for (j, own) in crane.description().coordinates.iter().enumerate() {
+        for (j, coordinate) in crane.description().coordinates.iter().enumerate() {
             let change = (more[j] - less[j]) / (2.0 * step);
-            close(&format!("{} by {}", own.name, model.inputs[0].name), response[(j, 0)], change, size, 1e-5)?;
+            close(&format!("{} by {}", coordinate.name, model.inputs[0].name), response[(j, 0)], change, size, 1e-5)?;
         }
         Ok(())
     };

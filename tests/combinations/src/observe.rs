@@ -107,8 +107,8 @@ pub fn live(source: &SourceFile) -> Result<LiveCrane, String> {
 /// # Errors
 /// There is none: its status in words.
 pub fn equilibrium(crane: &dyn DynCrane) -> Result<Vec<f64>, String> {
-    let found = crane.equilibrium(&statics::Settings::default());
-    if found.is_stable() { Ok(found.q) } else { Err(found.to_string()) }
+    let equilibrium = crane.equilibrium(&statics::Settings::default());
+    if equilibrium.is_stable() { Ok(equilibrium.q) } else { Err(equilibrium.to_string()) }
 }
 
 /// What commands print of a crane.
@@ -272,7 +272,7 @@ impl Found {
         let mut most: Option<f64> = None;
         for section in &condition.sections {
             let beam = section.beam(description);
-            let place = places.entry(beam).or_insert(0);
+            let index = places.entry(beam).or_insert(0);
             let stress = section.stress;
             for (what, value) in [
                 ("normal", stress.normal),
@@ -280,9 +280,9 @@ impl Found {
                 ("torsion", stress.torsion),
                 ("equivalent", stress.equivalent),
             ] {
-                self.add(CUTS, format!("{beam} stress at place {place}, {what}"), "Pa", value);
+                self.add(CUTS, format!("{beam} stress at place {index}, {what}"), "Pa", value);
             }
-            *place += 1;
+            *index += 1;
             let greatest = greatest.entry(beam).or_insert(0.0);
             *greatest = greatest.max(stress.equivalent);
             most = section.utilisation.into_iter().chain(most).reduce(f64::max);
@@ -342,30 +342,30 @@ impl Found {
         let Some(plant) = plant else { return };
         for p in GAINS {
             let of = Loop { p, i: 0.5, d: 0.0, filter: 0.0, lead: [0.0; 2], delay: 0.02, lag: 0.05 };
-            if let Ok(found) = margins(&plant, &of) {
-                self.margins(&format!("with {p}"), &found);
+            if let Ok(margins) = margins(&plant, &of) {
+                self.margins(&format!("with {p}"), &margins);
             }
         }
     }
 
-    fn margins(&mut self, of: &str, found: &Margins) {
+    fn margins(&mut self, of: &str, margins: &Margins) {
         let mut add = |name: &str, unit: &str, value: f64| self.add(MARGINS, format!("{name} {of}"), unit, value);
-        add("stable", "", f64::from(u8::from(found.stable)));
-        add("unstable motions", "", found.unstable as f64);
+        add("stable", "", f64::from(u8::from(margins.stable)));
+        add("unstable motions", "", margins.unstable as f64);
         let pairs = [
-            ("phase", found.phase),
-            ("gain", found.gain),
-            ("reduction", found.reduction),
-            ("distance", found.distance),
+            ("phase", margins.phase),
+            ("gain", margins.gain),
+            ("reduction", margins.reduction),
+            ("distance", margins.distance),
         ];
         for (name, (value, frequency)) in pairs.into_iter().filter_map(|(name, pair)| Some((name, pair?))) {
             add(name, name, value);
             add(&format!("frequency of {name}"), "rad/s", frequency);
         }
-        if let Some(bandwidth) = found.bandwidth {
+        if let Some(bandwidth) = margins.bandwidth {
             add("bandwidth", "rad/s", bandwidth);
         }
-        if let Some(damping) = found.damping() {
+        if let Some(damping) = margins.damping() {
             add("damping ratio", "1", damping);
         }
     }
@@ -383,8 +383,8 @@ impl Found {
             for (name, critical) in
                 [("load that lifts a foot", Critical::FirstFoot), ("load that tips", Critical::Tipping)]
             {
-                if let Ok(found) = critical_load(&mut crane.clone(), load, critical) {
-                    self.add(LOADS, name, "kg", found.load);
+                if let Ok(critical_load) = critical_load(&mut crane.clone(), load, critical) {
+                    self.add(LOADS, name, "kg", critical_load.load);
                 }
             }
         }
@@ -496,14 +496,14 @@ pub fn rated(crane: &LiveCrane) -> Option<Rating> {
 }
 
 /// The last pose of a chart.
-pub fn rate(crane: &LiveCrane, asked: &Envelope) -> Option<Rating> {
+pub fn rate(crane: &LiveCrane, envelope: &Envelope) -> Option<Rating> {
     let found = std::sync::Mutex::new(Vec::new());
     let done = |_: usize, ratings: &[Rating]| {
         if let Ok(mut found) = found.lock() {
             found.extend(ratings.to_vec());
         }
     };
-    asked.run(crane, &[0], &Execution { threads: 1, done: &done, cancelled: &|| false }).ok()?;
+    envelope.run(crane, &[0], &Execution { threads: 1, done: &done, cancelled: &|| false }).ok()?;
     found.into_inner().ok()?.pop()
 }
 

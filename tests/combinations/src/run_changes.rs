@@ -163,7 +163,7 @@ fn not_transposed(
     };
     let mut wrong = Vec::new();
     for ((column, _), found) in asked.iter().zip(&found) {
-        for ((along, found), rows) in along.iter().zip(found).zip(forward) {
+        for ((along, value), rows) in along.iter().zip(found).zip(forward) {
             let expected = rows[rows.len() - 1][*column];
             let largest = |columns: std::ops::RangeInclusive<usize>| {
                 rows.iter().flat_map(|row| &row[columns.clone()]).fold(0.0, |size: f64, x| size.max(x.abs()))
@@ -171,10 +171,10 @@ fn not_transposed(
             let kind = if *column > n { n + 1..=2 * n } else { 1..=n };
             let allowed =
                 OF_COLUMN * largest(*column..=*column) + OF_LARGEST * largest(kind) + OF_ONE / size_of(crane, *along);
-            let off = (found - expected).abs();
+            let off = (value - expected).abs();
             if off > allowed || off.is_nan() {
                 let name = name(crane, *along);
-                wrong.push(format!("column {column} by {name}: {found:.9e} backward, {expected:.9e} forward, {off:.1e} of {allowed:.1e}"));
+                wrong.push(format!("column {column} by {name}: {value:.9e} backward, {expected:.9e} forward, {off:.1e} of {allowed:.1e}"));
             }
         }
     }

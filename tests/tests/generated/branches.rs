@@ -100,8 +100,8 @@ fn places(whole: &Interpreted, of: &Interpreted, renamed: impl Fn(&str) -> Strin
 fn moved(of: &[f64], places: &[Option<usize>], size: usize) -> Vec<f64> {
     let mut there = vec![0.0; size];
     for (value, place) in of.iter().zip(places) {
-        if let Some(place) = place {
-            there[*place] = *value;
+        if let Some(index) = place {
+            there[*index] = *value;
         }
     }
     there

@@ -111,9 +111,9 @@ fn first_frequency_approaches_from_above_with_order_two() {
         crane.lowest_frequency(&straight(&crane)) / exact - 1.0
     };
     for (n, percent) in [(4, 1.453), (8, 0.360), (10, 0.230)] {
-        let found = 100.0 * excess(n);
+        let value = 100.0 * excess(n);
         // The law is known to a thousandth of a per cent.
-        assert!((found - percent).abs() < 1e-3, "n = {n}: {found} % against {percent} %");
+        assert!((value - percent).abs() < 1e-3, "n = {n}: {value} % against {percent} %");
     }
     let order = (excess(16) / excess(32)).log2();
     assert!((order - 2.0).abs() < 0.02, "order {order}");

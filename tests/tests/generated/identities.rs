@@ -479,7 +479,7 @@ fn transform_derivatives_are_derivatives() {
                     let count = coordinates.len();
                     let place = coordinates.binary_search(&CoordinateId(m)).ok();
                     for k in 0..16 {
-                        let expected = place.map_or(0.0, |place| first[16 * (start + place) + k]);
+                        let expected = place.map_or(0.0, |index| first[16 * (start + index) + k]);
                         assert_close(
                             of_pose[16 * body + k],
                             expected,
@@ -488,7 +488,7 @@ fn transform_derivatives_are_derivatives() {
                             &format!("seed {seed}, T of body {body}"),
                         );
                     }
-                    for (m, j) in place.into_iter().flat_map(|place| (place..count).map(move |j| (place, j))) {
+                    for (m, j) in place.into_iter().flat_map(|index| (index..count).map(move |j| (index, j))) {
                         let pair = pairs + m * count - m * m.saturating_sub(1) / 2 + j - m;
                         for k in 0..16 {
                             let (a, b) = (of_first[16 * (start + j) + k], second[16 * pair + k]);

@@ -134,9 +134,9 @@ fn modes_and_statics_leave_prescribed_coordinates_out() {
             assert_eq!(mode.shape.len(), q.len());
             assert!(prescribed.iter().all(|j| mode.shape[*j] == 0.0 && !mode.dominating.contains(j)));
         }
-        let found = Problem::new(&*crane).at_time(0.8).from(&q).solve();
-        let mut moved = found.q.clone();
+        let equilibrium = Problem::new(&*crane).at_time(0.8).from(&q).solve();
+        let mut moved = equilibrium.q.clone();
         crane.prescribe(0.8, &mut moved, &mut vec![0.0; q.len()]);
-        assert_eq!(found.q, moved, "{}: {found}", crane.description().name);
+        assert_eq!(equilibrium.q, moved, "{}: {equilibrium}", crane.description().name);
     }
 }

@@ -30,8 +30,8 @@ fn statistics_of_runs_are_unchanged() {
         let settings = Settings { method, audit: true, ..Settings::from_description(crane.description()) };
         let run = crane.simulate(&InitialState::at_rest(rest.q), &settings, &mut |_| ControlFlow::Continue(()));
         let statistics = run.expect("a stable run").statistics;
-        for (found, recorded) in [statistics.steps, statistics.evaluations].into_iter().zip(recorded) {
-            let ratio = found as f64 / recorded as f64;
+        for (value, recorded) in [statistics.steps, statistics.evaluations].into_iter().zip(recorded) {
+            let ratio = value as f64 / recorded as f64;
             assert!((ratio - 1.0).abs() < ALLOWED, "{name} by {method}: {statistics:?}, recorded {recorded:?}");
         }
     }

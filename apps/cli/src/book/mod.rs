@@ -43,8 +43,8 @@ type Dispatch = fn(&Arguments, &Registry, &mut dyn Write) -> Outcome<()>;
 
 /// Computes all sections and writes the document; `dispatch` prints each.
 pub fn book(options: &Book, registry: &Registry, dispatch: Dispatch, out: &mut dyn Write) -> Outcome<()> {
-    for given in options.chart.iter().chain(&options.fatigue) {
-        check_options(given)?;
+    for text in options.chart.iter().chain(&options.fatigue) {
+        check_options(text)?;
     }
     let crane = options.crane.open(registry)?;
     let live = registry.live(crane.as_ref())?;

@@ -241,7 +241,7 @@ impl List {
     fn check_part(&self, row: usize, duty: &Duty<'_>) -> Outcome<Checked> {
         let name = self.sheet.place(NAME).map_or("", |column| self.sheet.text(row, column));
         let number = |name: &str| self.number(row, name);
-        let mut found = Checked::new(name);
+        let mut checked = Checked::new(name);
         let shown = |what: &str, number: f64| match self.sheet.place(what) {
             Some(column) => self.sheet.shown(column, number, self.unit(what)),
             None => (number, self.unit(what).to_owned()),
@@ -256,41 +256,41 @@ impl List {
                 let (ratio, efficiency) = (ratio?.unwrap_or(1.0), efficiency?.unwrap_or(1.0));
                 let [most, rated] =
                     if self.kind == Kind::Motor { ["torque", "rated_torque"] } else { ["force", "rated_force"] };
-                uses(&mut found, most, effort / (ratio * efficiency))?;
-                uses(&mut found, rated, rms / (ratio * efficiency))?;
-                uses(&mut found, "speed", rate * ratio)?;
-                uses(&mut found, "power", power / efficiency)?;
-                uses(&mut found, "braking_power", *braking_power)?;
+                uses(&mut checked, most, effort / (ratio * efficiency))?;
+                uses(&mut checked, rated, rms / (ratio * efficiency))?;
+                uses(&mut checked, "speed", rate * ratio)?;
+                uses(&mut checked, "power", power / efficiency)?;
+                uses(&mut checked, "braking_power", *braking_power)?;
             }
             Duty::Cylinder(CylinderDuty { push, pull, speed, lengths: [shortest, longest], .. }) => {
                 let (bore, rod) = (number("bore")?.unwrap_or(f64::NAN), number("rod")?.unwrap_or(0.0));
                 let [piston, annulus] = [bore * bore, bore * bore - rod * rod].map(|square| FRAC_PI_4 * square);
-                uses(&mut found, "pressure", (push / piston).max(pull / annulus))?;
-                uses(&mut found, "speed", *speed)?;
+                uses(&mut checked, "pressure", (push / piston).max(pull / annulus))?;
+                uses(&mut checked, "speed", *speed)?;
                 let (stroke, retracted) = (number("stroke")?, number("retracted")?);
                 let of_stroke = |number| shown("stroke", number);
                 if let Some(stroke) = stroke {
-                    found.fits("stroke", [longest - shortest, stroke], of_stroke);
+                    checked.fits("stroke", [longest - shortest, stroke], of_stroke);
                 }
                 if let Some(retracted) = retracted.filter(|retracted| retracted > shortest) {
                     let [retracted, shortest] = [retracted, *shortest].map(|number| {
                         let (number, unit) = shown("retracted", number);
                         format!("{} {unit}", Cell::Number(number).short())
                     });
-                    found.short.push(format!("retracted {retracted} where it is {shortest} long"));
+                    checked.short.push(format!("retracted {retracted} where it is {shortest} long"));
                 }
                 if let Some((stroke, retracted)) = stroke.zip(retracted) {
-                    found.fits("length", [*longest, retracted + stroke], of_stroke);
+                    checked.fits("length", [*longest, retracted + stroke], of_stroke);
                 }
-                found.pressure = Some((push / piston).max(pull / annulus));
-                found.flow = Some(piston * speed);
+                checked.pressure = Some((push / piston).max(pull / annulus));
+                checked.flow = Some(piston * speed);
             }
             Duty::Pump(PumpDuty { flow, pressure, power, .. }) => {
-                uses(&mut found, "flow", *flow)?;
-                uses(&mut found, "pressure", *pressure)?;
-                uses(&mut found, "power", *power)?;
+                uses(&mut checked, "flow", *flow)?;
+                uses(&mut checked, "pressure", *pressure)?;
+                uses(&mut checked, "power", *power)?;
             }
         }
-        Ok(found)
+        Ok(checked)
     }
 }

@@ -29,7 +29,7 @@ pub struct Heading(Vec<String>);
 
 impl Heading {
     /// Of a chart.
-    pub fn new(asked: &Envelope, layout: &Layout, coverage: &Coverage) -> Self {
+    pub fn new(envelope: &Envelope, layout: &Layout, coverage: &Coverage) -> Self {
         /// Digits of the hash that distinguish specs.
         const DIGITS: usize = 12;
         let hash: String = layout.description.spec_hash.as_str().chars().take(DIGITS).collect();
@@ -37,7 +37,7 @@ impl Heading {
             none if none.is_empty() => none,
             names => format!("; combinations {names}"),
         };
-        let factor = if asked.factor > 1.0 { format!(" of {} times the load", asked.factor) } else { String::new() };
+        let factor = if envelope.factor > 1.0 { format!(" of {} times the load", envelope.factor) } else { String::new() };
         Self(vec![
             format!("{}, spec {hash}{combinations}", layout.description.name),
             format!("Limits{factor}: {}", coverage.considered.join("; ")),
@@ -56,13 +56,13 @@ pub fn write_chart_figures(
     console: &Console,
     folder: &Path,
     name: &str,
-    asked: &Envelope,
+    envelope: &Envelope,
     layout: &Layout,
     rows: &[ChartRow],
     (surface, heading): (Option<&Surface>, &Heading),
 ) -> Outcome<Vec<String>> {
     let load = &layout.columns[layout.load()];
-    let parameter = &layout.description.parameters[asked.load].name;
+    let parameter = &layout.description.parameters[envelope.load].name;
     let mut written = Vec::new();
     let mut save = |what: &str, picture: Result<String, String>| -> Outcome<()> {
         let file = format!("{name}_{what}.svg");
@@ -76,20 +76,20 @@ pub fn write_chart_figures(
         let title = heading.headings(&format!("Load chart: largest {parameter} [{}]", load.unit));
         save("load_chart", crate::figures::titled(&title, &panels, panels.len().min(2)))?;
     }
-    if let Some(slewing) = layout.slewing(asked) {
+    if let Some(slewing) = layout.slewing(envelope) {
         let title = heading.headings(&format!("Largest {parameter} over the slewing angle [{}]", load.unit));
-        save("slew_diagram", crate::figures::titled(&title, &[slew_diagram(asked, layout, rows, slewing)], 1))?;
+        save("slew_diagram", crate::figures::titled(&title, &[slew_diagram(envelope, layout, rows, slewing)], 1))?;
     }
-    let varying: Vec<usize> = (0..asked.axes.0.len()).filter(|axis| asked.axes.0[*axis].values.len() > 1).collect();
+    let varying: Vec<usize> = (0..envelope.axes.0.len()).filter(|axis| envelope.axes.0[*axis].values.len() > 1).collect();
     if let [.., y, x] = varying[..] {
         let title =
             heading.headings(&format!("Largest {parameter} [{}], the least over all else that varies", load.unit));
-        let governed = map(asked, layout, rows, ([x, y], title), |row| layout.load_of(row), f64::min);
+        let governed = map(envelope, layout, rows, ([x, y], title), |row| layout.load_of(row), f64::min);
         save("largest_load_map", svg(&governed))?;
         let used = |row: &ChartRow| row.numbers[layout.utilisation()];
         if rows.iter().any(|row| used(row).is_finite()) {
             let title = "Utilisation with the crane's own load, the maximum over everything else that varies";
-            let used = map(asked, layout, rows, ([x, y], heading.headings(title)), used, f64::max);
+            let used = map(envelope, layout, rows, ([x, y], heading.headings(title)), used, f64::max);
             save("utilisation_map", svg(&Map { words: Vec::new(), ..used }))?;
         }
     }
@@ -179,12 +179,12 @@ fn contour(sheet: &Sheet, level: f64) -> Vec<Vec<(f64, f64)>> {
 type Group = (Vec<usize>, Vec<(f64, f64)>);
 
 /// The largest load over the slewing angle, with everything else at some of its values.
-fn slew_diagram(asked: &Envelope, layout: &Layout, rows: &[ChartRow], slewing: usize) -> Panel {
-    let axes = &asked.axes.0;
+fn slew_diagram(envelope: &Envelope, layout: &Layout, rows: &[ChartRow], slewing: usize) -> Panel {
+    let axes = &envelope.axes.0;
     let (name, unit, factor) = shown(&axes[slewing], &layout.description);
     let mut groups: Vec<Group> = Vec::new();
     for (pose, row) in rows.iter().enumerate() {
-        let mut places = asked.axes.places(pose);
+        let mut places = envelope.axes.places(pose);
         let angle = axes[slewing].values[places[slewing]] * factor;
         places[slewing] = 0;
         let point = (angle, layout.load_of(row));
@@ -219,14 +219,14 @@ fn slew_diagram(asked: &Envelope, layout: &Layout, rows: &[ChartRow], slewing: u
 
 /// A quantity over two axes, reduced over the others by `worst`, with the letters of the limits that govern there.
 fn map(
-    asked: &Envelope,
+    envelope: &Envelope,
     layout: &Layout,
     rows: &[ChartRow],
     ([x, y], mut title): ([usize; 2], Vec<String>),
     quantity: impl Fn(&ChartRow) -> f64,
     worst: fn(f64, f64) -> f64,
 ) -> Map {
-    let axes = &asked.axes.0;
+    let axes = &envelope.axes.0;
     let side = |axis: usize| {
         let (name, unit, factor) = shown(&axes[axis], &layout.description);
         let values: Vec<f64> = axes[axis].values.iter().map(|value| value * factor).collect();
@@ -236,7 +236,7 @@ fn map(
     let mut cells = vec![vec![f64::NAN; width]; height];
     let mut words = vec![vec![String::new(); width]; height];
     for (pose, row) in rows.iter().enumerate() {
-        let places = asked.axes.places(pose);
+        let places = envelope.axes.places(pose);
         let (column, line) = (places[x], places[y]);
         let (cell, value) = (&mut cells[line][column], quantity(row));
         let next = if cell.is_nan() { value } else { worst(*cell, value) };

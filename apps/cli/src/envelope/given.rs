@@ -107,9 +107,9 @@ impl Given {
 
     /// The chart beside ratings at its positions: between two of them, what the crane bears at both; with the best values of what the chart does not
     /// name.
-    pub fn beside(&self, positions: &[Axis], asked: &Envelope, layout: &Layout, rows: &[ChartRow]) -> Grid {
+    pub fn beside(&self, positions: &[Axis], envelope: &Envelope, layout: &Layout, rows: &[ChartRow]) -> Grid {
         let columns: Vec<Option<usize>> =
-            positions.iter().map(|given| asked.axes.0.iter().position(|axis| axis.varied == given.varied)).collect();
+            positions.iter().map(|given| envelope.axes.0.iter().position(|axis| axis.varied == given.varied)).collect();
         let columns: Vec<usize> = columns.into_iter().flatten().collect();
         let unit = &layout.columns[layout.load()].unit;
         let of_positions = columns.iter().map(|column| {
@@ -126,14 +126,14 @@ impl Given {
             let around: Vec<Vec<f64>> = positions
                 .iter()
                 .zip(&columns)
-                .map(|(given, column)| neighbours(&asked.axes.0[*column].values, given.values[index]))
+                .map(|(given, column)| neighbours(&envelope.axes.0[*column].values, given.values[index]))
                 .collect();
             let is_near = |row: &&ChartRow| {
                 columns.iter().zip(&around).all(|(column, near)| near.contains(&row.numbers[*column]))
             };
             // What all around bear, by what the chart does not name.
             let mut found: Vec<(Vec<f64>, &ChartRow)> = Vec::new();
-            let axes = 0..asked.axes.0.len();
+            let axes = 0..envelope.axes.0.len();
             for row in rows.iter().filter(is_near) {
                 let others: Vec<f64> =
                     axes.clone().filter(|axis| !columns.contains(axis)).map(|axis| row.numbers[axis]).collect();

@@ -11,10 +11,10 @@ use serde_json::{Map, Value};
 use crate::problem::{Outcome, Problem};
 
 /// Values of the live parameters that a chart depends on: all but the load and those that it varies.
-pub fn parameters(crane: &dyn DynCrane, asked: &Envelope) -> Map<String, Value> {
-    let varies = |index: usize| asked.axes.0.iter().any(|axis| axis.varied == Varied::Parameter(index));
+pub fn parameters(crane: &dyn DynCrane, envelope: &Envelope) -> Map<String, Value> {
+    let varies = |index: usize| envelope.axes.0.iter().any(|axis| axis.varied == Varied::Parameter(index));
     let fixed = crane.description().parameters.iter().enumerate();
-    let fixed = fixed.filter(|(index, _)| *index != asked.load && !varies(*index));
+    let fixed = fixed.filter(|(index, _)| *index != envelope.load && !varies(*index));
     fixed.map(|(index, info)| (info.name.to_string(), crane.parameter(index).into())).collect()
 }
 

@@ -158,7 +158,7 @@ mod tests {
         // With less room the letter is left of a load and its letter.
         let crowded = |count: usize| {
             let word = vec!["1890 T".to_owned(); count];
-            let values: Vec<f64> = (0..count).map(|place| place as f64).collect();
+            let values: Vec<f64> = (0..count).map(|index| index as f64).collect();
             let (x, cells) = (("slew [°]".to_owned(), values.clone()), vec![values; 2]);
             let picture = svg(&Map { x, cells, words: vec![word; 2], ..map.clone() }).unwrap();
             ["\n1890 T\n", "\nT\n"].map(|text| picture.matches(text).count())

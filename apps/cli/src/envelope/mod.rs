@@ -51,7 +51,7 @@ const MOST_POSES: usize = 10_000_000;
 pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let begin = Instant::now();
     let crane = options.analysis.crane.open(registry)?;
-    let (asked, mut layout) = ask(options, crane.as_ref())?;
+    let (envelope, mut layout) = ask(options, crane.as_ref())?;
     let name = crane.description().name.as_str();
     layout.combinations = if options.combinations {
         registry.combinations(name)?
@@ -59,24 +59,24 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
         registry.live(crane.as_ref())?.chain().combination.iter().cloned().collect()
     };
     let description = crane.description();
-    let unit_of_load = &description.parameters[asked.load].unit;
+    let unit_of_load = &description.parameters[envelope.load].unit;
     let given = options.given.as_deref();
     let given =
-        given.map(|file| Given::read(&registry.console, file, unit_of_load, description, &asked.axes)).transpose()?;
+        given.map(|file| Given::read(&registry.console, file, unit_of_load, description, &envelope.axes)).transpose()?;
     files::folder(&options.folder.out)?;
     let name = format!("{}_envelope", description.name);
-    let (rows, journals) = rows_of(options, registry, crane.as_ref(), (&asked, &layout))?;
+    let (rows, journals) = rows_of(options, registry, crane.as_ref(), (&envelope, &layout))?;
     let seconds = registry.console.seconds_since(begin);
 
     let mut report = Report::default();
-    let coverage = Coverage::new(crane.as_ref(), &asked.limits);
-    summary::facts(&mut report, &asked, &layout, &coverage, &rows);
+    let coverage = Coverage::new(crane.as_ref(), &envelope.limits);
+    summary::facts(&mut report, &envelope, &layout, &coverage, &rows);
     if let Some(seconds) = seconds {
         report.fact("wall time", seconds, "s");
     }
-    report.value("parameters", identity::parameters(crane.as_ref(), &asked));
-    let mut written = rows::write_rows(&registry.console, &options.folder.out, &name, &asked, &layout, &rows)?;
-    let surface = surface::Surface::new(&asked, &layout, &rows);
+    report.value("parameters", identity::parameters(crane.as_ref(), &envelope));
+    let mut written = rows::write_rows(&registry.console, &options.folder.out, &name, &envelope, &layout, &rows)?;
+    let surface = surface::Surface::new(&envelope, &layout, &rows);
     let chart = surface.as_ref().map(|surface| Chart { surface, rows: &rows, asked_radii: &options.radii });
     let [by_radius, by_place] = chart.as_ref().map_or_else(chart::empty, |chart| [chart.table(), chart.by_place()]);
     if let Some(chart) = &chart {
@@ -90,7 +90,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     }
     if let Some(given) = &given {
         match (&given.places, &chart) {
-            (Places::Positions(positions), _) => report.grid(given.beside(positions, &asked, &layout, &rows)),
+            (Places::Positions(positions), _) => report.grid(given.beside(positions, &envelope, &layout, &rows)),
             (Places::Radii(radii), Some(chart)) => report.grid(chart.beside(radii, &given.loads)),
             (Places::Radii(_), None) => {
                 report.caution(Some("no chart beside the given one: no range moves the load in or out"));
@@ -99,13 +99,13 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     }
     report.data(by_radius);
     report.data(by_place);
-    report.grid(summary::governing(&asked, &layout, &rows));
-    let heading = figures::Heading::new(&asked, &layout, &coverage);
+    report.grid(summary::governing(&envelope, &layout, &rows));
+    let heading = figures::Heading::new(&envelope, &layout, &coverage);
     written.extend(figures::write_chart_figures(
         &registry.console,
         &options.folder.out,
         &name,
-        &asked,
+        &envelope,
         &layout,
         &rows,
         (surface.as_ref(), &heading),

@@ -60,11 +60,11 @@ pub struct Layout {
 
 impl Layout {
     /// The columns: axes, load, place, condition with the crane's own load.
-    pub fn new(asked: &Envelope, crane: &dyn DynCrane, point: Option<usize>) -> Self {
+    pub fn new(envelope: &Envelope, crane: &dyn DynCrane, point: Option<usize>) -> Self {
         let description = crane.description().clone();
         let mut columns = Vec::new();
         let mut column = |name: String, unit: &str| columns.push(Column::new(name, unit));
-        for axis in &asked.axes.0 {
+        for axis in &envelope.axes.0 {
             match axis.varied {
                 Varied::Drive(drive) => {
                     let coordinate = &description.coordinates[description.drives[drive].coordinate];
@@ -76,7 +76,7 @@ impl Layout {
                 }
             }
         }
-        column("largest_load".to_owned(), &description.parameters[asked.load].unit);
+        column("largest_load".to_owned(), &description.parameters[envelope.load].unit);
         column("radius".to_owned(), "m");
         column("height".to_owned(), "m");
         for KeyFigure { key, unit, .. } in [KeyFigure::TIPPING_MARGIN, KeyFigure::UTILISATION] {
@@ -93,7 +93,7 @@ impl Layout {
             columns,
             point,
             slew: SlewAxis::new(crane),
-            axes: asked.axes.0.len(),
+            axes: envelope.axes.0.len(),
             description,
             combinations: Vec::new(),
         }
@@ -148,14 +148,14 @@ impl Layout {
     }
 
     /// The row of a pose.
-    pub fn row(&self, asked: &Envelope, crane: &dyn DynCrane, pose: usize, rating: &Rating) -> ChartRow {
+    pub fn row(&self, envelope: &Envelope, crane: &dyn DynCrane, pose: usize, rating: &Rating) -> ChartRow {
         let position: Option<Vector3<f64>> = rating.loaded.as_ref().map(|at| match self.point {
             Some(point) => at.points[point],
             None => at.end,
         });
         let or_nan = |number: Option<f64>| number.unwrap_or(f64::NAN);
         let spec_load = rating.with_spec_load.as_ref();
-        let mut numbers = asked.axes.values(pose);
+        let mut numbers = envelope.axes.values(pose);
         numbers.push(or_nan(rating.load));
         numbers.push(or_nan(position.map(|position| self.slew.radius(&position))));
         numbers.push(or_nan(position.map(|position| position.z)));
@@ -198,7 +198,7 @@ pub fn write_rows(
     console: &Console,
     folder: &Path,
     name: &str,
-    asked: &Envelope,
+    envelope: &Envelope,
     layout: &Layout,
     rows: &[ChartRow],
 ) -> Outcome<Vec<String>> {
@@ -212,12 +212,12 @@ pub fn write_rows(
     console.write_fields(&folder.join(&csv), header, fields)?;
 
     let archive = format!("{name}.npz");
-    let axes = asked.axes.0.iter().zip(&layout.columns).map(|(axis, column)| Array {
+    let axes = envelope.axes.0.iter().zip(&layout.columns).map(|(axis, column)| Array {
         name: format!("axis_{}", column.name).into(),
         shape: vec![axis.values.len()],
         data: axis.values.clone(),
     });
-    let shape: Vec<usize> = asked.axes.0.iter().map(|axis| axis.values.len()).collect();
+    let shape: Vec<usize> = envelope.axes.0.iter().map(|axis| axis.values.len()).collect();
     let columns = layout.columns.iter().enumerate().skip(layout.load());
     let columns = columns.map(|(index, column)| Array {
         name: column.name.clone().into(),

@@ -20,23 +20,23 @@ use super::{
 const ROOM: usize = SCREEN - 30;
 
 /// The crane, the limits, and the poses that bear the most and the least.
-pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &Coverage, rows: &[ChartRow]) {
+pub fn facts(report: &mut Report, envelope: &Envelope, layout: &Layout, coverage: &Coverage, rows: &[ChartRow]) {
     let description = &layout.description;
     report.fact("crane", description.name.as_str(), "");
     report.fact_as("spec_hash", "hash of the spec", description.spec_hash.as_str(), "");
-    report.fact("load", description.parameters[asked.load].name.as_str(), "");
+    report.fact("load", description.parameters[envelope.load].name.as_str(), "");
     if !layout.combinations.is_empty() {
         report.fact("combinations", layout.combinations.join(", "), "");
     }
-    if asked.factor > 1.0 {
-        report.line("loads multiplied by", asked.factor, "");
+    if envelope.factor > 1.0 {
+        report.line("loads multiplied by", envelope.factor, "");
     }
     for (name, all) in [("limits", &coverage.considered), ("not considered", &coverage.not_considered)] {
         for (index, words) in all.iter().flat_map(|words| wrapped(words, ROOM)).enumerate() {
             report.line(if index == 0 { name } else { "" }, words, "");
         }
     }
-    report.value("limits", limits_of(asked, description, coverage));
+    report.value("limits", limits_of(envelope, description, coverage));
     report.fact("poses", rows.len(), "");
     let by_load = |a: &&ChartRow, b: &&ChartRow| layout.load_of(a).total_cmp(&layout.load_of(b));
     let rated = || rows.iter().filter(|row| row.numbers[layout.load()].is_finite());
@@ -44,10 +44,10 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &
         for (key, name, row) in
             [("least", "minimum of the largest loads", least), ("greatest", "maximum of the largest loads", greatest)]
         {
-            for (index, words) in row_text(row, asked, layout).into_iter().enumerate() {
+            for (index, words) in row_text(row, envelope, layout).into_iter().enumerate() {
                 report.line(if index == 0 { name } else { "" }, words, "");
             }
-            report.value(key, rating_of(row, asked, layout));
+            report.value(key, rating_of(row, envelope, layout));
         }
     }
     let none = rows.len() - rated().count();
@@ -56,8 +56,8 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &
             "{none} of {} poses are beyond a limit with the minimum load, {} {}, or have no stable equilibrium: they have no \
              largest load, and count as 0 in charts",
             rows.len(),
-            asked.loads[0],
-            description.parameters[asked.load].unit
+            envelope.loads[0],
+            description.parameters[envelope.load].unit
         )));
     }
     for why in &coverage.without_effect {
@@ -66,8 +66,8 @@ pub fn facts(report: &mut Report, asked: &Envelope, layout: &Layout, coverage: &
 }
 
 /// Limits, for programs.
-fn limits_of(asked: &Envelope, description: &Description, coverage: &Coverage) -> Value {
-    let limits = &asked.limits;
+fn limits_of(envelope: &Envelope, description: &Description, coverage: &Coverage) -> Value {
+    let limits = &envelope.limits;
     let drive = |info: &DriveInfo| &description.coordinates[info.coordinate];
     let efforts = description.drives.iter().zip(&limits.efforts).filter(|(_, effort)| effort.is_finite());
     let efforts = efforts.map(|(info, effort)| {
@@ -83,15 +83,15 @@ fn limits_of(asked: &Envelope, description: &Description, coverage: &Coverage) -
         "efforts": efforts.collect::<Vec<_>>(),
         "deflections": deflections.collect::<Vec<_>>(),
         "of_parts": limits.of_parts.iter().map(|kind| kind.name()).collect::<Vec<_>>(),
-        "load_factor": asked.factor,
+        "load_factor": envelope.factor,
         "considered": coverage.considered,
         "not_considered": coverage.not_considered,
     })
 }
 
 /// Load, place, pose and governing limit of a row, for programs.
-fn rating_of(row: &ChartRow, asked: &Envelope, layout: &Layout) -> Value {
-    let pose = layout.columns[..asked.axes.0.len()].iter().zip(&row.numbers);
+fn rating_of(row: &ChartRow, envelope: &Envelope, layout: &Layout) -> Value {
+    let pose = layout.columns[..envelope.axes.0.len()].iter().zip(&row.numbers);
     let pose = pose.map(|(column, value)| json!({"name": column.name, "value": value, "unit": column.unit}));
     let [kind, of] = row.governing.each_ref().map(|words| (!words.is_empty()).then_some(words));
     json!({
@@ -106,8 +106,8 @@ fn rating_of(row: &ChartRow, asked: &Envelope, layout: &Layout) -> Value {
 }
 
 /// Load and place of a row; its pose; its governing limit.
-fn row_text(row: &ChartRow, asked: &Envelope, layout: &Layout) -> [String; 3] {
-    let pose = asked.axes.0.iter().zip(&row.numbers).map(|(axis, value)| {
+fn row_text(row: &ChartRow, envelope: &Envelope, layout: &Layout) -> [String; 3] {
+    let pose = envelope.axes.0.iter().zip(&row.numbers).map(|(axis, value)| {
         let (name, unit, factor) = shown(axis, &layout.description);
         let blank = if unit == "°" { "" } else { " " };
         format!("{name} {}{blank}{unit}", short(value * factor))
@@ -128,9 +128,9 @@ fn row_text(row: &ChartRow, asked: &Envelope, layout: &Layout) -> [String; 3] {
 }
 
 /// Which limits govern in how many poses.
-pub fn governing(asked: &Envelope, layout: &Layout, rows: &[ChartRow]) -> Grid {
+pub fn governing(envelope: &Envelope, layout: &Layout, rows: &[ChartRow]) -> Grid {
     let title = "Which limit governs, in how many poses, and for which loads";
-    let unit = &layout.description.parameters[asked.load].unit;
+    let unit = &layout.description.parameters[envelope.load].unit;
     let headers = [
         "limit".to_owned(),
         "of".to_owned(),

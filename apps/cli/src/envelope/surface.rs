@@ -44,9 +44,9 @@ pub struct Surface {
 impl Surface {
     /// The poses of an envelope; `None` where no drive moves the load in or out. A knot has the smallest load over all slewing
     /// angles.
-    pub fn new(asked: &Envelope, layout: &Layout, rows: &[ChartRow]) -> Option<Self> {
-        let axes = &asked.axes.0;
-        let slewing = layout.slewing(asked);
+    pub fn new(envelope: &Envelope, layout: &Layout, rows: &[ChartRow]) -> Option<Self> {
+        let axes = &envelope.axes.0;
+        let slewing = layout.slewing(envelope);
         let moves = |axis: &usize| {
             axes[*axis].values.len() > 1 && Some(*axis) != slewing && matches!(axes[*axis].varied, Varied::Drive(_))
         };
@@ -62,7 +62,7 @@ impl Surface {
         let none = Knot { radius: f64::NAN, height: f64::NAN, load: f64::INFINITY, pose: usize::MAX };
         let mut sheets = vec![vec![vec![none; count(second)]; count(Some(first))]; combinations];
         for (pose, row) in rows.iter().enumerate() {
-            let places = asked.axes.places(pose);
+            let places = envelope.axes.places(pose);
             let sheet = others.iter().fold(0, |sheet, axis| sheet * axes[*axis].values.len() + places[*axis]);
             let knot = &mut sheets[sheet][places[first]][second.map_or(0, |second| places[second])];
             let load = layout.load_of(row);

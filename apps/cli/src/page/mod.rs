@@ -41,7 +41,7 @@ pub fn report(options: &Page, registry: &Registry, out: &mut dyn Write) -> Outco
         .map(|table| chart::read_chart(&registry.console, table, crane.as_ref()))
         .transpose()?;
     let moves = if options.sensitivity { moves(crane.as_ref(), registry)? } else { Value::Null };
-    let fatigue = options.fatigue.as_ref().map(|given| fatigue_of(options, given, registry)).transpose()?;
+    let fatigue = options.fatigue.as_ref().map(|text| fatigue_of(options, text, registry)).transpose()?;
     let instrument = options.instrument.as_deref();
     let extras = Extras { chart: chart.unwrap_or_default(), moves, instrument, fatigue };
     let prepared = prepare(&registry.console, &cases, &options.timing, Method::RECOMMENDED)?;
@@ -64,9 +64,9 @@ struct Extras<'a> {
 }
 
 /// Fatigue of the crane of a page, with options of `crane fatigue`.
-fn fatigue_of(options: &Page, given: &str, registry: &Registry) -> Outcome<Report> {
-    book::check_options(given)?;
-    let words = ["crane", "fatigue", &options.crane.name].map(str::to_owned).into_iter().chain(book::words_of(given)?);
+fn fatigue_of(options: &Page, text: &str, registry: &Registry) -> Outcome<Report> {
+    book::check_options(text)?;
+    let words = ["crane", "fatigue", &options.crane.name].map(str::to_owned).into_iter().chain(book::words_of(text)?);
     match book::parsed(&words.collect::<Vec<_>>())?.action {
         Some(Action::Fatigue(mut asked)) => {
             asked.analysis.crane = options.crane.clone();

@@ -100,8 +100,8 @@ struct Changes {
 
 impl Changes {
     /// Change of an output for the step of a number.
-    fn change(&self, place: usize, output: usize) -> f64 {
-        self.found.derivatives[place][output] * self.numbers[place].step
+    fn change(&self, index: usize, output: usize) -> f64 {
+        self.found.derivatives[index][output] * self.numbers[index].step
     }
 
     /// Whether the outputs are those of a run.
@@ -110,7 +110,7 @@ impl Changes {
     }
 
     /// The same relative to the value of the output; `None` where zero has no meaning, or for a value of rounding.
-    fn relative(&self, place: usize, output: usize) -> Option<f64> {
+    fn relative(&self, index: usize, output: usize) -> Option<f64> {
         /// A value below this fraction of the largest of its kind is zero up to rounding, or close to it.
         const SMALL: f64 = 1e-6;
         /// A rate below this, m/s or rad/s, is that of a crane that stays at rest, up to rounding.
@@ -133,22 +133,22 @@ impl Changes {
         let alike = all.filter(|(other, _)| is_alike(other));
         let greatest = alike.fold(0.0, |size: f64, (_, value)| size.max(value.abs()));
         let value = self.found.values[output];
-        (value.abs() > SMALL * greatest).then(|| self.change(place, output) / value.abs())
+        (value.abs() > SMALL * greatest).then(|| self.change(index, output) / value.abs())
     }
 
     /// The largest error of a change, relative to the output, of a number whose derivatives are differences.
-    fn uncertainty(&self, place: usize) -> Option<f64> {
-        let errors = self.numbers[place].errors.as_ref()?;
+    fn uncertainty(&self, index: usize) -> Option<f64> {
+        let errors = self.numbers[index].errors.as_ref()?;
         let error = |&output: &usize| {
-            self.relative(place, output)?;
-            Some(errors.get(output)? * self.numbers[place].step.abs() / self.found.values[output].abs())
+            self.relative(index, output)?;
+            Some(errors.get(output)? * self.numbers[index].step.abs() / self.found.values[output].abs())
         };
         Some(self.shown.iter().filter_map(error).fold(0.0, f64::max))
     }
 
     /// The largest relative change of an output that is shown and not small among its kind.
-    fn influence(&self, place: usize) -> f64 {
-        let shares = self.shown.iter().filter_map(|&output| self.relative(place, output));
+    fn influence(&self, index: usize) -> f64 {
+        let shares = self.shown.iter().filter_map(|&output| self.relative(index, output));
         shares.fold(0.0, |size: f64, share| size.max(share.abs()))
     }
 }
@@ -187,7 +187,7 @@ pub fn sensitivity(options: &Sensitivity, registry: &Registry, out: &mut dyn Wri
     let changes = changes(&request, registry.checked(&description.name)?, &crane, loaded.as_ref())?;
     let steps: Vec<f64> = changes.numbers.iter().map(|number| number.step).collect();
     let cautions = match &loaded {
-        Some((largest, asked)) => largest.cautions(&changes.found, &crane, asked, &changes.fixed, &steps),
+        Some((largest, envelope)) => largest.cautions(&changes.found, &crane, envelope, &changes.fixed, &steps),
         None => cautions(&crane, &changes.found, &steps, &request.settings),
     };
     let mut report = begin(options, description);
@@ -254,8 +254,8 @@ fn loaded(options: &Sensitivity, crane: &LiveCrane) -> Outcome<Loaded> {
     Ok((largest, asked))
 }
 
-fn no_load(none: &NoLargestLoad, crane: &LiveCrane, asked: &Envelope) -> Problem {
-    let unit = crane.description().parameters[asked.load].unit.as_str();
+fn no_load(none: &NoLargestLoad, crane: &LiveCrane, envelope: &Envelope) -> Problem {
+    let unit = crane.description().parameters[envelope.load].unit.as_str();
     let title = format!("{} has no largest load in this pose: {}", crane.description().name, none.words(crane, unit));
     Problem::failed(title, "choose another pose with `--hold`, or other limits")
 }
@@ -292,12 +292,12 @@ fn changes(request: &Request<'_>, checked: &Checked, crane: &LiveCrane, loaded: 
     let settings = &request.settings;
     let own = crane;
     let description = crane.description();
-    let (parameters, places) = numbers(request.numbers, description, loaded.map(|(_, asked)| asked.load))?;
+    let (parameters, places) = numbers(request.numbers, description, loaded.map(|(_, envelope)| envelope.load))?;
     let mut crane = crane.clone();
     let mut found = match loaded {
-        Some((largest, asked)) => {
-            set_parameters(&mut crane, &[(asked.load, asked.factor * largest.load)])?;
-            let all: Vec<usize> = parameters.iter().copied().chain([asked.load]).collect();
+        Some((largest, envelope)) => {
+            set_parameters(&mut crane, &[(envelope.load, envelope.factor * largest.load)])?;
+            let all: Vec<usize> = parameters.iter().copied().chain([envelope.load]).collect();
             sensitivity::sensitivity_near(&crane, &all, settings, &largest.condition.q)?
         }
         None => derivatives(&crane, &parameters, settings)?,
@@ -317,11 +317,11 @@ fn changes(request: &Request<'_>, checked: &Checked, crane: &LiveCrane, loaded: 
             is_fixed: true,
         });
     }
-    if let Some((largest, asked)) = loaded
-        && largest.add_to(&mut found, &crane, asked, parameters.len(), &fixed).is_none()
+    if let Some((largest, envelope)) = loaded
+        && largest.add_to(&mut found, &crane, envelope, parameters.len(), &fixed).is_none()
     {
         let errors =
-            largest.add_differences(&mut found, own, asked, &fixed).map_err(|none| no_load(&none, own, asked))?;
+            largest.add_differences(&mut found, own, envelope, &fixed).map_err(|none| no_load(&none, own, envelope))?;
         for (number, error) in numbers.iter_mut().zip(errors) {
             number.errors = Some(vec![0.0; found.outputs.len() - 1].into_iter().chain([error]).collect());
         }
@@ -347,7 +347,7 @@ fn ordered(
     let name = description.name.to_string();
     let mut changes =
         Changes { crane: name, found, order: (0..numbers.len()).collect(), numbers, fixed: Vec::new(), shown };
-    let influence: Vec<f64> = changes.order.iter().map(|&place| changes.influence(place)).collect();
+    let influence: Vec<f64> = changes.order.iter().map(|&index| changes.influence(index)).collect();
     changes.order.sort_by(|&a, &b| influence[b].total_cmp(&influence[a]));
     changes
 }
@@ -363,7 +363,7 @@ fn remarks(report: &mut Report, changes: &Changes) {
     for number in changes.numbers.iter().filter(|number| number.value == 0.0) {
         report.caution(Some(format!("{} is 0: its changes are those per {}", number.label, per(number))));
     }
-    for (place, number) in changes.numbers.iter().enumerate() {
+    for (index, number) in changes.numbers.iter().enumerate() {
         let why = if number.is_fixed {
             "cannot be a live parameter: its changes are differences of whole cranes"
         } else {
@@ -378,7 +378,7 @@ fn remarks(report: &mut Report, changes: &Changes) {
             };
             format!("{} {why}, with errors {errors} of the outputs", number.label)
         };
-        report.caution(changes.uncertainty(place).map(words));
+        report.caution(changes.uncertainty(index).map(words));
     }
 }
 

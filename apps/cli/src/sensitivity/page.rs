@@ -66,7 +66,7 @@ fn moves(crane: &LiveCrane, checked: &Checked) -> Option<Value> {
 /// A crane that has further parameters, with the values of those of another one and its inputs.
 fn with_values_of(crane: &LiveCrane, mut live: LiveCrane) -> Option<LiveCrane> {
     let description = crane.description();
-    let place = |name: &str| live.description().parameters.iter().position(|own| own.name == name);
+    let place = |name: &str| live.description().parameters.iter().position(|parameter| parameter.name == name);
     let places: Vec<usize> = description.parameters.iter().map(|info| place(&info.name)).collect::<Option<_>>()?;
     for (place, value) in places.into_iter().zip(crane.parameters()) {
         live.set_parameter(place, *value).ok()?;

@@ -18,15 +18,15 @@ pub fn parameters(changes: &Changes) -> Grid {
     let title = "Numbers, the most influential first: influence is the largest relative change of an output below";
     let headings = ["parameter", "value", "unit", "change", "influence [%]", "method"];
     let mut grid = Grid::new("parameters", title, &headings);
-    for &place in &changes.order {
-        let number = &changes.numbers[place];
+    for &index in &changes.order {
+        let number = &changes.numbers[index];
         let method = if number.errors.is_some() { "differences" } else { "exact" };
         grid.row([
             Cell::from(number.label.as_str()),
             number.value.into(),
             number.unit.as_str().into(),
             number.step.into(),
-            Cell::Change(changes.influence(place)),
+            Cell::Change(changes.influence(index)),
             method.into(),
         ]);
     }

@@ -82,14 +82,14 @@ pub fn extremes_of_joints(description: &Description, table: &Table) -> Grid {
             Cut::Joint { body } => description.bodies[body].link.as_str(),
             Cut::Body { .. } | Cut::Inside { .. } => continue,
         };
-        for (component, unit, found) in extremes(description, cut, table) {
+        for (component, unit, extremes) in extremes(description, cut, table) {
             grid.row([
                 name.into(),
                 component.into(),
-                found.minimum.into(),
-                found.time_of_minimum.into(),
-                found.maximum.into(),
-                found.time_of_maximum.into(),
+                extremes.minimum.into(),
+                extremes.time_of_minimum.into(),
+                extremes.maximum.into(),
+                extremes.time_of_maximum.into(),
                 unit.into(),
             ]);
         }

@@ -33,7 +33,7 @@ fn is_expected(caution: &str, pattern: &str) -> bool {
     let first = pieces.next().unwrap_or_default();
     let rest = caution
         .strip_prefix(first)
-        .map(|rest| pieces.try_fold(rest, |rest, piece| rest.find(piece).map(|place| &rest[place + piece.len()..])));
+        .map(|rest| pieces.try_fold(rest, |rest, piece| rest.find(piece).map(|index| &rest[index + piece.len()..])));
     rest.flatten().is_some_and(|rest| rest.is_empty() || pattern.ends_with('…'))
 }
 
@@ -60,7 +60,7 @@ fn surprises(spec: &Path) -> Vec<String> {
             };
             let said = format!("{command}: {caution}");
             match expected.iter().position(|pattern| is_expected(&said, pattern)) {
-                Some(place) => drop(expected.remove(place)),
+                Some(index) => drop(expected.remove(index)),
                 None => found.push(format!("{name}: {said}")),
             }
         }
@@ -111,11 +111,11 @@ fn the_loader_crane_comes_to_rest() {
     assert!(output.status.success() && !printed.contains("caution"), "{printed}");
     let results = fs::read_to_string(out.join("my_loader_crane.csv")).expect("results");
     let mut lines = results.lines();
-    let place = lines.next().expect("a header").split(',').position(|name| name == "tip_z [m]").expect("a column");
+    let index = lines.next().expect("a header").split(',').position(|name| name == "tip_z [m]").expect("a column");
     let number = |line: &str, place: usize| {
         line.split(',').nth(place).and_then(|word| word.parse::<f64>().ok()).expect("a number")
     };
-    let heights: Vec<[f64; 2]> = lines.map(|line| [number(line, 0), number(line, place)]).collect();
+    let heights: Vec<[f64; 2]> = lines.map(|line| [number(line, 0), number(line, index)]).collect();
     let swing = |from: f64| {
         let heights = heights.iter().filter(|[t, _]| (from..=from + 5.0).contains(t)).map(|[_, z]| *z);
         let [low, high] = heights.fold([f64::MAX, f64::MIN], |[low, high], z| [low.min(z), high.max(z)]);

@@ -13,9 +13,9 @@ const TURNTABLE: &str = "format: 1\nname: turntable\nparameters: {load: {value: 
 /// The phase margin of `(p + d s) e^(−T s)/(J s²)` is atan(d ω/p) − ω T with `J ω² = |p + i d ω|`.
 #[test]
 fn a_turntable_has_the_margins_of_its_formula() {
-    let place = folder("margins");
-    fs::create_dir_all(&place).expect("a folder");
-    let spec = place.join("turntable.yaml");
+    let path = folder("margins");
+    fs::create_dir_all(&path).expect("a folder");
+    let spec = path.join("turntable.yaml");
     fs::write(&spec, TURNTABLE).expect("a file");
     let spec = spec.to_string_lossy().into_owned();
     let (p, d, delay) = (40.0, 30.0, 0.08);
@@ -53,12 +53,12 @@ fn a_turntable_has_the_margins_of_its_formula() {
 
 #[test]
 fn margins_are_written_as_a_table_and_as_a_map() {
-    let place = folder("margins_files");
-    fs::create_dir_all(&place).expect("a folder");
+    let path = folder("margins_files");
+    fs::create_dir_all(&path).expect("a folder");
     let ranges = ["--range", "main_boom_theta=0:60deg:3", "--range", "knuckle_theta=-60deg:0:2"];
     for (name, begins) in [("margins.csv", "main_boom_theta [rad],knuckle_theta [rad],stable"), ("margins.svg", "<svg")]
     {
-        let file = place.join(name);
+        let file = path.join(name);
         let asked = ["margins", "knuckle_boom", "--on", "main_boom_theta_rate", "--p", "0.6", "--delay", "0.1", "-o"];
         let output = crane(&[&asked[..], &[&*file.to_string_lossy()], &ranges].concat());
         assert!(output.status.success(), "{}", text(&output.stderr));
@@ -67,7 +67,7 @@ fn margins_are_written_as_a_table_and_as_a_map() {
         let printed = text(&output.stdout);
         assert!(printed.contains("acts on") && printed.contains("main_boom_theta_rate"), "{printed}");
     }
-    let map = fs::read_to_string(place.join("margins.svg")).expect("a map");
+    let map = fs::read_to_string(path.join("margins.svg")).expect("a map");
     assert!(map.contains("phase margin") && map.contains("knuckle_theta [°]"), "{map:.400}");
     assert!(map.contains("p 0.6, dead time 0.1"), "{map:.400}");
 }

@@ -37,9 +37,9 @@ fn numbers_of_the_spec_have_derivatives_by_their_places() {
     assert_eq!(found["change"].as_f64(), Some(0.1));
     let derivative = |output: &str| change(&found, output, height)["derivative"].as_f64().expect("a number");
     let at = |height: f64| {
-        let place = folder("sensitivity");
-        fs::create_dir_all(&place).expect("a folder");
-        let file = place.join(format!("boom_{height}.yaml"));
+        let path = folder("sensitivity");
+        fs::create_dir_all(&path).expect("a folder");
+        let file = path.join(format!("boom_{height}.yaml"));
         fs::write(&file, format!("extends: two_arms.yaml\nname: changed\nlinks: [{{name: boom, beam: {{section: {{box: {{height: {height:?}}}}}}}}}]\n"))
             .expect("a file");
         fs::write(file.with_file_name("two_arms.yaml"), include_str!("../../../../specs/two_arms.yaml"))
@@ -60,19 +60,19 @@ fn numbers_of_the_spec_have_derivatives_by_their_places() {
 
 #[test]
 fn what_moves_what_is_drawn_and_written() {
-    let place = folder("sensitivity_files");
-    fs::create_dir_all(&place).expect("a folder");
+    let path = folder("sensitivity_files");
+    fs::create_dir_all(&path).expect("a folder");
     for file in ["moves.csv", "moves.svg"] {
-        let file = place.join(file);
+        let file = path.join(file);
         let output =
             crane(&["sensitivity", "loader_tipping", "--hold", "column_psi=120deg", "-o", &file.to_string_lossy()]);
         assert!(output.status.success(), "{}", text(&output.stderr));
         let printed = text(&output.stdout);
         assert!(printed.contains("tipping_margin") && printed.contains('█'), "{printed}");
     }
-    let csv = fs::read_to_string(place.join("moves.csv")).expect("a table");
+    let csv = fs::read_to_string(path.join("moves.csv")).expect("a table");
     assert!(csv.starts_with("parameter,value,unit,change,load_centre_x [m]") && csv.lines().count() == 2, "{csv}");
-    let svg = fs::read_to_string(place.join("moves.svg")).expect("a chart");
+    let svg = fs::read_to_string(path.join("moves.svg")).expect("a chart");
     assert!(svg.starts_with("<svg") && svg.contains("tipping_margin"), "{svg}");
 }
 
@@ -254,10 +254,10 @@ fn the_largest_load_is_that_of_the_chart() {
 /// A number that cannot be a live parameter: differences, marked as such.
 #[test]
 fn fixed_numbers_change_by_differences() {
-    let place = folder("sensitivity_fixed");
-    fs::create_dir_all(&place).expect("a folder");
-    fs::write(place.join("two_arms.yaml"), include_str!("../../../../specs/two_arms.yaml")).expect("a file");
-    let file = place.join("solid.yaml");
+    let path = folder("sensitivity_fixed");
+    fs::create_dir_all(&path).expect("a folder");
+    fs::write(path.join("two_arms.yaml"), include_str!("../../../../specs/two_arms.yaml")).expect("a file");
+    let file = path.join("solid.yaml");
     let solid = "extends: two_arms.yaml\nname: solid\nlinks: [{name: boom, beam: {section: {solid: {height: 0.2, width: 0.1}}}}]\n";
     fs::write(&file, solid).expect("a file");
     let height = "links.boom.beam.section.solid.height";
@@ -284,9 +284,9 @@ fn fixed_numbers_change_by_differences() {
 /// Bars of a page are the numbers of the command that it names.
 #[test]
 fn what_moves_what_on_a_page_is_what_the_command_prints() {
-    let place = folder("sensitivity_page");
-    fs::create_dir_all(&place).expect("a folder");
-    let page = place.join("two_arms.html");
+    let path = folder("sensitivity_page");
+    fs::create_dir_all(&path).expect("a folder");
+    let page = path.join("two_arms.html");
     let output = crane(&[
         "report",
         "two_arms",

@@ -316,7 +316,7 @@ fn pads_are_where_they_are() {
     let pads = crate::scene::Scene::new(&live, &crane.guess()).pads;
     let names = &crane.description().coordinates;
     for out in [0.2, 1.6] {
-        let places = names.iter().map(|own| if own.name.ends_with("stage_x") { out } else { 0.0 });
+        let places = names.iter().map(|coordinate| if coordinate.name.ends_with("stage_x") { out } else { 0.0 });
         let frames = crane.transforms_at(&places.collect::<Vec<f64>>());
         let at = |pad: &crate::scene::Pad| frames[pad.body].transform_point(&nalgebra::Point3::new(pad.x, 0.0, 0.0));
         for (stage, (beams, inside)) in

@@ -14,7 +14,7 @@ impl Figure {
     pub fn floating(&self) -> Vec<Vector3<f64>> {
         let near = 1e-3 * self.all_corners().iter().map(nalgebra::Matrix::norm).fold(1.0, f64::max);
         let holds = |(_, planes): &Solid, (places, _): &Solid| {
-            places.iter().any(|place| planes.iter().all(|(on, normal)| (place - on).dot(normal) < near))
+            places.iter().any(|position| planes.iter().all(|(on, normal)| (position - on).dot(normal) < near))
         };
         let mut left: Vec<Solid> = self.shapes.iter().map(|shape| self.solid(shape)).collect();
         let mut reached: Vec<Solid> = left.pop().into_iter().collect();

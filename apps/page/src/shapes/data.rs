@@ -67,10 +67,10 @@ fn place(place: &Place) -> Value {
 }
 
 fn body(body: &Body) -> Value {
-    let Body { name, link, mass, length, parent, along, own, frame, .. } = body;
+    let Body { name, link, mass, length, parent, along, own: range, frame, .. } = body;
     json!({
         "name": name, "link": link, "mass": mass, "length": length, "parent": parent, "along": along,
-        "moved_by": [own.start, own.end], "frame": rows(frame),
+        "moved_by": [range.start, range.end], "frame": rows(frame),
     })
 }
 

@@ -222,8 +222,8 @@ fn size(scene: &Scene, coordinates: &[CoordinateInfo]) -> f64 {
     let origin = (!has_base(coordinates)).then(Vector3::zeros);
     let places = ends.chain(points).chain(bars).chain(forms).chain(supports).chain(anchors).chain(origin);
     let [low, high] = places
-        .fold([Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)], |[low, high], place| {
-            [low.inf(&place), high.sup(&place)]
+        .fold([Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)], |[low, high], position| {
+            [low.inf(&position), high.sup(&position)]
         });
     let diagonal = (high - low).norm();
     ((high - low).add_scalar(2.0 * MARGIN * diagonal)).norm().max(1e-3)
@@ -617,7 +617,7 @@ impl<'a> Builder<'a> {
         let wall = body.length > 0.0 && self.is_nothing(first);
         let normal = if wall { self.reference[0].column(0).xyz() } else { Vector3::z() };
         self.fixed(Owner::Ground, BASE, Mesh::rod(-normal * (0.5 * side), Vector3::zeros(), [2.0 * side; 2], 40));
-        let slides = self.coordinates[body.own.clone()].iter().any(|own| own.kind == CoordinateKind::Translation);
+        let slides = self.coordinates[body.own.clone()].iter().any(|coordinate| coordinate.kind == CoordinateKind::Translation);
         if !slides && !self.is_nothing(first) {
             self.fixed(Owner::Ground, BASE, Mesh::bar(Vector3::zeros(), first, [1.1 * side; 2]));
         }

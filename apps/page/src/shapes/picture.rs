@@ -103,13 +103,13 @@ impl Camera {
         let off = |corner: &Vector3<f64>| [0, 1].map(|axis| (corner[axis] - centre[axis]).abs() * least / sides[axis]);
         let distance = seen.iter().map(|corner| corner.z + ROOM * off(corner).into_iter().fold(0.0, f64::max) / SLOPE);
         let distance = distance.fold(f64::NEG_INFINITY, f64::max) + 0.02 * size;
-        let place = turn.transpose() * Vector3::new(centre.x, centre.y, distance);
-        Self { turn, place, focus: least / 2.0 / SLOPE, middle: sides.map(|side| side / 2.0), near: 0.01 * size }
+        let position = turn.transpose() * Vector3::new(centre.x, centre.y, distance);
+        Self { turn, place: position, focus: least / 2.0 / SLOPE, middle: sides.map(|side| side / 2.0), near: 0.01 * size }
     }
 
     /// A place as [`Triangle`] has it, unless it is too near or behind the camera.
-    fn see(&self, place: &Vector3<f64>) -> Option<Vector3<f64>> {
-        let seen = self.turn * (place - self.place);
+    fn see(&self, position: &Vector3<f64>) -> Option<Vector3<f64>> {
+        let seen = self.turn * (position - self.place);
         let near = 1.0 / -seen.z;
         (-seen.z >= self.near).then(|| {
             Vector3::new(self.middle[0] + self.focus * seen.x * near, self.middle[1] - self.focus * seen.y * near, near)
@@ -119,7 +119,7 @@ impl Camera {
 
 pub(super) fn range(places: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
     let ends = [Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)];
-    places.iter().fold(ends, |[low, high], place| [low.inf(place), high.sup(place)])
+    places.iter().fold(ends, |[low, high], position| [low.inf(position), high.sup(position)])
 }
 
 /// The picture of a figure, red, green and blue of each picture element, row by row from the top; `shown`: places that are to be in it, too, m.
@@ -140,7 +140,7 @@ pub fn draw(figure: &Figure, view: &View, shown: &[Vector3<f64>]) -> Vec<u8> {
             let tone = EDGE + (1.0 - EDGE) * normal.dot(&light).abs();
             triangles.extend(seen(&camera, places, shape.paint.colour.map(|channel| byte(f64::from(channel) * tone))));
             if sees_ground && shape.owner != Owner::Ground {
-                let fallen = places.map(|place| place - Vector3::from(SUN) * ((place.z - ground.level) / SUN[2]));
+                let fallen = places.map(|position| position - Vector3::from(SUN) * ((position.z - ground.level) / SUN[2]));
                 shadows.extend(seen(&camera, fallen, [0; 3]));
             }
         }
@@ -191,13 +191,13 @@ impl Ground {
         if ray.z >= 0.0 || !way.is_finite() {
             return [SKY.map(byte); 2];
         }
-        let place = camera.place + way * ray;
+        let position = camera.place + way * ray;
         let (width, blur) = (LINE * self.square, way * ray.norm_squared() * across / -ray.z);
         // Distance of the nearest line; far away, the grid becomes a tone.
         let off = |x: f64| (x / self.square - (x / self.square).round()).abs() * self.square;
-        let covered = (f64::midpoint(width, blur) - off(place.x).min(off(place.y))) / blur.max(1e-12);
+        let covered = (f64::midpoint(width, blur) - off(position.x).min(off(position.y))) / blur.max(1e-12);
         let line = covered.clamp(0.0, (width / blur.max(1e-12)).min(1.0));
-        let haze = (((place - self.centre).norm() / self.size - 0.8) / 3.0).clamp(0.0, 1.0);
+        let haze = (((position - self.centre).norm() / self.size - 0.8) / 3.0).clamp(0.0, 1.0);
         let mut colours = [[0; 3]; 2];
         for (colour, shade) in colours.iter_mut().zip([1.0, SHADE]) {
             for channel in 0..3 {

@@ -322,11 +322,11 @@ fn what_closes_a_loop_is_drawn() {
     let (name, text) =
         EXAMPLES.into_iter().find(|(name, _)| *name == "parallel_harvester").expect("a crane with a loop");
     let figure = figure(&example(name, text));
-    let place = Vector3::new(-0.23, 0.0, 2.19);
+    let position = Vector3::new(-0.23, 0.0, 2.19);
     let own = figure.shapes.iter().filter(|shape| shape.owner == Owner::Body(0));
     let middles = own.map(|shape| (shape, picture::range(&shape.mesh.corners)));
     let (pin, [low, high]) =
-        middles.into_iter().find(|(_, [low, high])| ((low + high) / 2.0 - place).norm() < 1e-9).expect("a pin");
+        middles.into_iter().find(|(_, [low, high])| ((low + high) / 2.0 - position).norm() < 1e-9).expect("a pin");
     assert_eq!(pin.paint, PASSIVE);
     assert!(((high - low).y / (high - low).x - 1.35).abs() < 1e-9, "{}", high - low);
     let tied = text

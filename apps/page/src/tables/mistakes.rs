@@ -4,7 +4,7 @@ use crane_codegen::{Diagnostics, Located};
 use serde_json::{Value, json};
 
 /// Each mistake or warning with its place, its reason and its remedy.
-pub fn diagnostics(found: &Diagnostics) -> Value {
+pub fn diagnostics(diagnostics: &Diagnostics) -> Value {
     let of = |Located { mistake, file, start, end }: Located<'_>| {
         json!({
             "code": mistake.code,
@@ -19,5 +19,5 @@ pub fn diagnostics(found: &Diagnostics) -> Value {
             "help": mistake.help,
         })
     };
-    found.located().map(of).collect()
+    diagnostics.located().map(of).collect()
 }

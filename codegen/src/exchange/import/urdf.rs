@@ -131,7 +131,7 @@ impl Reader {
         let limits = ["lower", "upper"].map(|key| {
             // A joint without a limit may say so.
             let given = node.child("limit").and_then(|limit| limit.text(key));
-            let infinite = given.and_then(|given| given.trim().parse().ok()).filter(|limit: &f64| limit.is_infinite());
+            let infinite = given.and_then(|text| text.trim().parse().ok()).filter(|limit: &f64| limit.is_infinite());
             infinite.or_else(|| number("limit", key))
         });
         // The default of one of them is zero.
@@ -183,16 +183,16 @@ impl Reader {
         let has_rotor = node.descendants().any(|inner| inner.local_name() == "rotor_inertia");
         let (mut inertia, mut reduction) = (None, None);
         for part in node.elements().filter(|inner| inner.is("joint") || inner.is("actuator")).map(Element::read) {
-            for given in part.elements() {
-                let number = match given.local_name() {
+            for element in part.elements() {
+                let number = match element.local_name() {
                     "rotor_inertia" => &mut inertia,
                     "gear_ratio" | "mechanicalReduction" if has_rotor => &mut reduction,
                     _ => {
-                        given.leave_out(OF_DRIVES);
+                        element.leave_out(OF_DRIVES);
                         continue;
                     }
                 };
-                *number = self.content_or_value(given.read(), &owner);
+                *number = self.content_or_value(element.read(), &owner);
             }
         }
         node.elements()

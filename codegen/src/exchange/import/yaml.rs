@@ -96,7 +96,7 @@ fn frames(links: &[SpecLink], standing: &[FileFrame]) -> Vec<String> {
     let written = all.filter(differs).filter(|(_, (name, _))| is_one_line(name));
     let line = |(link, (name, pose)): (Option<&str>, &FileFrame)| {
         let link = link.map_or_else(String::new, |link| format!(", link: {link}"));
-        let transform = placement(pose).map_or_else(String::new, |given| format!(", transform: {{{given}}}"));
+        let transform = placement(pose).map_or_else(String::new, |text| format!(", transform: {{{text}}}"));
         format!("- {{name: {}{link}{transform}}}", quoted(name))
     };
     written.map(line).collect()

@@ -104,8 +104,8 @@ fn what_is_in_series_carries_the_same_force() {
 }
 
 /// A few rounding errors of forces of order 1e3.
-fn assert_close(found: f64, expected: f64, what: &str) {
-    assert!((found - expected).abs() <= 1e-11 * (1.0 + expected.abs()), "{what}: {found} instead of {expected}");
+fn assert_close(value: f64, expected: f64, what: &str) {
+    assert!((value - expected).abs() <= 1e-11 * (1.0 + expected.abs()), "{what}: {value} instead of {expected}");
 }
 
 #[test]

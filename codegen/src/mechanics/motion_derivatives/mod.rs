@@ -71,7 +71,7 @@ pub fn of_forces<'g>(model: &Model<'g>, forces: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let mut rows: Vec<Expr<'g>> = Vec::new();
     for inputs in [&model.q, &model.v] {
         let columns: Vec<_> = inputs.iter().map(|input| model.graph.derivatives(forces, *input)).collect();
-        rows.extend((0..n * n).map(|place| columns[place % n][place / n]));
+        rows.extend((0..n * n).map(|index| columns[index % n][index / n]));
     }
     rows
 }

@@ -13,7 +13,7 @@ impl Plausibility<'_> {
     pub(super) fn efforts(&mut self) {
         let chain = self.chain;
         for given in entries(self.crane.drives.as_ref()) {
-            let Some(span) = given.effort.as_ref().map(|given| given.span) else { continue };
+            let Some(span) = given.effort.as_ref().map(|motion| motion.span) else { continue };
             let named = |name: &str| given.coordinate.value.as_deref() == Some(name);
             let Some(drive) = chain.drives.iter().find(|drive| named(&chain.coordinates[drive.coordinate.0].name))
             else {
@@ -33,7 +33,7 @@ impl Plausibility<'_> {
     /// A drive that stays behind its whole motion: where its force falls to nothing, it acts as a damper so stiff that steps become tiny.
     pub(super) fn slow_drives(&mut self) {
         for given in entries(self.crane.drives.as_ref()) {
-            let Some(span) = given.max_rate.as_ref().map(|given| given.span) else { continue };
+            let Some(span) = given.max_rate.as_ref().map(|constant| constant.span) else { continue };
             let named = |name: &str| given.coordinate.value.as_deref() == Some(name);
             let chain = self.chain;
             let driven = chain.drives.iter().find(|drive| named(&chain.coordinates[drive.coordinate.0].name));

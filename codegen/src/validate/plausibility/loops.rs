@@ -16,10 +16,10 @@ impl Plausibility<'_> {
     pub(super) fn loops(&mut self) {
         let (crane, chain) = (self.crane, self.chain);
         let frames = chain.frames(&chain.guess, &self.values);
-        for (index, (given, joint)) in entries(crane.loop_joints.as_ref()).zip(&chain.loop_joints).enumerate() {
+        for (index, (loop_joint, joint)) in entries(crane.loop_joints.as_ref()).zip(&chain.loop_joints).enumerate() {
             let [longest, others] = self.sides(joint, &frames);
             if longest > others * (1.0 + SAME) + SAME {
-                self.warn(rule::open_polygon(given.name.span, &joint.name, rounded(longest), rounded(others)));
+                self.warn(rule::open_polygon(loop_joint.name.span, &joint.name, rounded(longest), rounded(others)));
             }
             if let LoopJointKind::Pin { across: Across { axis, .. }, to_axis } = &joint.kind {
                 let frame = |end: &Attachment| end.body.map_or(Frame::WORLD, |BodyId(body)| frames[body]);
@@ -28,13 +28,13 @@ impl Plausibility<'_> {
                 let cosine: f64 = (0..3).map(|i| one[i] * other[i]).sum();
                 let angle = libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees();
                 if angle > CROSSED {
-                    self.warn(rule::crossed_axes(given.joint.span, &joint.name, rounded(angle)));
+                    self.warn(rule::crossed_axes(loop_joint.joint.span, &joint.name, rounded(angle)));
                 }
             }
             if let Some(other) = chain.loop_joints[..index].iter().find(|other| self.is_same(joint, other)) {
-                self.warn(rule::held_twice(given.name.span, &joint.name, &other.name));
+                self.warn(rule::held_twice(loop_joint.name.span, &joint.name, &other.name));
             }
-            for end in [&given.from, &given.to].into_iter().filter_map(|end| end.value.as_ref()) {
+            for end in [&loop_joint.from, &loop_joint.to].into_iter().filter_map(|end| end.value.as_ref()) {
                 let beam = entries(Some(&crane.links)).find(|link| {
                     link.beam.is_some() && end.link.as_ref().is_some_and(|name| name.value == link.name.value)
                 });

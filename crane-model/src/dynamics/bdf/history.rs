@@ -149,8 +149,8 @@ impl History {
         // The polynomial's values at the new times, as weights of the old differences, and the differences of these values.
         let mut weights: [Weights; ORDER + 1] = std::array::from_fn(|m| newton_polynomials(part - factor * m as f64));
         for m in 1..=k {
-            for place in (m..=k).rev() {
-                weights[place] = std::array::from_fn(|i| weights[place - 1][i] - weights[place][i]);
+            for index in (m..=k).rev() {
+                weights[index] = std::array::from_fn(|i| weights[index - 1][i] - weights[index][i]);
             }
         }
         for m in 0..=k {
@@ -181,9 +181,9 @@ impl History {
 /// Replaces states, the most recent first, by their backward differences.
 fn take_differences(states: &mut [Vec<f64>]) {
     for m in 1..states.len() {
-        for place in (m..states.len()).rev() {
-            let (before, at) = states.split_at_mut(place);
-            for (at, before) in at[0].iter_mut().zip(&before[place - 1]) {
+        for index in (m..states.len()).rev() {
+            let (before, at) = states.split_at_mut(index);
+            for (at, before) in at[0].iter_mut().zip(&before[index - 1]) {
                 *at = before - *at;
             }
         }

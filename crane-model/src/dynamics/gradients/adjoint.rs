@@ -413,8 +413,8 @@ impl<'a, 'f> Sweep<'a, 'f> {
         let t = equations.references.strictly_inside(t);
         self.motions.fill([0.0; 2]);
         for reference in equations.references.all().iter().filter(|reference| counts(reference.rigid)) {
-            for (weight, place) in self.motions[reference.drive].iter_mut().zip([0, self.n]) {
-                *weight += sign * sum.motion[place + reference.coordinate];
+            for (weight, index) in self.motions[reference.drive].iter_mut().zip([0, self.n]) {
+                *weight += sign * sum.motion[index + reference.coordinate];
             }
         }
         self.functions.drive_motions(t, &self.motions, sum);
@@ -447,7 +447,7 @@ impl<'a, 'f> Sweep<'a, 'f> {
         let mut own = Covector::zero(sum.motion.len(), sum.numbers.len());
         self.rates.pull_back(self.functions, (t, &self.motion), &weights, &mut self.of_drives, &mut own)?;
         for reference in equations.references.all() {
-            let [position, rate] = [reference.coordinate, n + reference.coordinate].map(|place| own.motion[place]);
+            let [position, rate] = [reference.coordinate, n + reference.coordinate].map(|index| own.motion[index]);
             let motions = &mut self.motions[reference.drive];
             *motions = [motions[0] + position, motions[1] + rate];
             if reference.rigid {

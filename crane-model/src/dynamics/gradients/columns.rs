@@ -41,8 +41,8 @@ pub(super) fn column_along(
     at: ResultsAt,
 ) -> f64 {
     let n = crane.size();
-    if let Some(place) = of_motion(n, column) {
-        return change[place];
+    if let Some(index) = of_motion(n, column) {
+        return change[index];
     }
     let size = size_of(change, n, &ForceStates::new(crane.description()).scales());
     difference(crane, around, (motion, change, size), &mut results(n, t, at))[column]

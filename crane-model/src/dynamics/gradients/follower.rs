@@ -229,8 +229,8 @@ impl Variation<'_, '_> {
         for (along, motions) in along.iter_mut().zip(&self.motions[0]) {
             for reference in equations.references.all() {
                 let [position, rate] = if moves { motions[reference.drive] } else { [0.0; 2] };
-                for (place, of_drive) in [(reference.coordinate, position), (self.n + reference.coordinate, rate)] {
-                    along[place] = if reference.rigid { 0.0 } else { along[place] - of_drive };
+                for (index, of_drive) in [(reference.coordinate, position), (self.n + reference.coordinate, rate)] {
+                    along[index] = if reference.rigid { 0.0 } else { along[index] - of_drive };
                 }
             }
         }

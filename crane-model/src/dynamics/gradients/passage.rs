@@ -157,13 +157,13 @@ impl Passage {
                 }
             }
             sum.motion[n..2 * n].fill(0.0);
-            for place in 0..2 * n {
+            for index in 0..2 * n {
                 let mut change = vec![0.0; self.motion.len()];
-                change[place] = 1.0;
+                change[index] = 1.0;
                 let rates = difference(cranes[0], None, (&self.motion, &change, 1.0), &mut |_, motion| {
                     self.rates_after(cranes, motion)
                 });
-                sum.motion[place] += dot(&of_rates, &rates);
+                sum.motion[index] += dot(&of_rates, &rates);
             }
         }
         if self.trigger == Trigger::Time {

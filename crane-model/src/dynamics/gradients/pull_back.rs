@@ -131,11 +131,11 @@ fn of_forces(
         *sum += of_rates.iter().enumerate().map(|(row, weight)| by_states[(row, column)] * weight).sum::<f64>();
     }
     for (force, row) in forces.forces().iter().zip(forces.rows()).filter(|(force, _)| !force.is_of_foot) {
-        let own = force.first..force.first + force.count;
+        let range = force.first..force.first + force.count;
         let weight = row.along(generalized);
-        add(&mut of_x[own.clone()], weight, &force.by_states);
+        add(&mut of_x[range.clone()], weight, &force.by_states);
         let along = |slopes: &[f64]| -> f64 {
-            slopes.iter().zip(&of_rates[own.clone()]).map(|(slope, weight)| slope * weight).sum()
+            slopes.iter().zip(&of_rates[range.clone()]).map(|(slope, weight)| slope * weight).sum()
         };
         let length = force.by_length * weight + along(&force.rates_by_length);
         let speed = force.by_speed * weight + along(&force.rates_by_speed);
@@ -147,7 +147,7 @@ fn of_forces(
         let of_cylinder = &mut cylinders[cylinder];
         of_cylinder.length_and_rate = [length, speed];
         add(&mut of_cylinder.jacobian, force.force, generalized);
-        let [wanted, rate, opening] = force.by_command.map(|slope| slope * of_rates[own.end - 1]);
+        let [wanted, rate, opening] = force.by_command.map(|slope| slope * of_rates[range.end - 1]);
         (of_cylinder.wanted, of_cylinder.opening) = ([wanted, rate], opening);
     }
 }

@@ -190,22 +190,22 @@ fn of_forces(
         *rate = states.iter().enumerate().map(|(column, state)| by_states[(row, column)] * state).sum();
     }
     for (force, row) in forces.forces().iter().zip(forces.rows()).filter(|(force, _)| !force.is_of_foot) {
-        let own = force.first..force.first + force.count;
+        let range = force.first..force.first + force.count;
         let of_cylinder = force.cylinder.map(|cylinder| &cylinders[cylinder]);
         let [length, speed] = match of_cylinder {
             Some(slopes) => slopes.length_and_rate,
             None => [row.along(&along[..n]), row.along(&along[n..2 * n])],
         };
-        let by_states: f64 = force.by_states.iter().zip(&states[own.clone()]).map(|(slope, x)| slope * x).sum();
+        let by_states: f64 = force.by_states.iter().zip(&states[range.clone()]).map(|(slope, x)| slope * x).sum();
         row.add_to(sum, force.by_length * length + force.by_speed * speed + by_states);
-        for (place, rate) in rates[own.clone()].iter_mut().enumerate() {
-            *rate += force.rates_by_length[place] * length + force.rates_by_speed[place] * speed;
+        for (index, rate) in rates[range.clone()].iter_mut().enumerate() {
+            *rate += force.rates_by_length[index] * length + force.rates_by_speed[index] * speed;
         }
         if let Some(CylinderSlopes { wanted, opening, jacobian, .. }) = of_cylinder {
             sum.iter_mut().zip(jacobian).for_each(|(sum, slope)| *sum += slope * force.force);
             let command = [wanted[0], wanted[1], *opening];
             let by_command: f64 = force.by_command.iter().zip(command).map(|(slope, change)| slope * change).sum();
-            rates[own.end - 1] += by_command;
+            rates[range.end - 1] += by_command;
         }
     }
 }

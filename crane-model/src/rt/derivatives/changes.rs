@@ -48,8 +48,8 @@ impl<C: Columns> Changes<C> {
         }
         for column in 0..COLUMNS {
             let Some([a, b, c, d, e, f, ..]) = carried.get(column / C::WIDTH) else { break };
-            let (arriving, place) = ([a, b, c, d, e, f], PLACES[column]);
-            let by = [self.of[0][place], self.of[1][place]];
+            let (arriving, index) = ([a, b, c, d, e, f], PLACES[column]);
+            let by = [self.of[0][index], self.of[1][index]];
             for state in 0..C::STATES {
                 for k in 0..6 {
                     let of = arriving[k].as_ref()[column % C::WIDTH + state];
@@ -74,8 +74,8 @@ impl<C: Columns> Changes<C> {
                     units[12 + k].as_mut()[state] = -C::lane(&of[12 + k], state);
                 }
             }
-            for place in 0..15 {
-                of[place] = C::number(&units[place]);
+            for index in 0..15 {
+                of[index] = C::number(&units[index]);
             }
         }
     }

@@ -57,8 +57,8 @@ pub struct Link {
 impl Link {
     /// Whether the coordinate at a place is attached to the one in front of it.
     #[inline]
-    fn continues(self, place: usize) -> bool {
-        self.before == place.checked_sub(1)
+    fn continues(self, index: usize) -> bool {
+        self.before == index.checked_sub(1)
     }
 }
 
@@ -107,7 +107,7 @@ fn combine<C: Columns, const COUNT: usize>(
 
 /// Whether some coordinate is not attached to the one in front of it.
 pub fn has_branches(links: &[Link]) -> bool {
-    links.iter().enumerate().any(|(place, link)| !link.continues(place))
+    links.iter().enumerate().any(|(index, link)| !link.continues(index))
 }
 
 /// Coordinates that have no path in common with others: those of a tree, or of several whose coordinates are mixed.
@@ -141,11 +141,11 @@ impl Piece {
     #[inline(always)]
     fn all<C: Columns>(links: &[Link], stride: usize) -> impl Iterator<Item = Piece> {
         let width = stride * C::WIDTH;
-        apart(links).flat_map(move |own| {
-            own.clone().step_by(width.max(1)).map(move |first| {
-                let columns = first..own.end.min(first + width);
+        apart(links).flat_map(move |range| {
+            range.clone().step_by(width.max(1)).map(move |first| {
+                let columns = first..range.end.min(first + width);
                 let units = 0..columns.len().div_ceil(C::WIDTH);
-                Piece { own: own.clone(), columns, stride, units }
+                Piece { own: range.clone(), columns, stride, units }
             })
         })
     }
@@ -159,7 +159,7 @@ impl Piece {
         states: &mut States<'_, C>,
         changes: &[Changes<C>],
     ) {
-        let Piece { own, columns, stride, units } = self;
+        let Piece { own: range, columns, stride, units } = self;
         for i in 0..sweeps.links.len() {
             let row = part(swept, *stride, i, units);
             for k in 0..row.len() {
@@ -177,18 +177,18 @@ impl Piece {
             let unit = |column: usize| column.saturating_sub(columns.start);
             unit(j) / C::WIDTH..unit(end).div_ceil(C::WIDTH)
         };
-        sweeps.inward::<CAUSES>(own.start..columns.end, beyond, swept, states, changes, &mut []);
-        sweeps.outward::<CAUSES>(own.clone(), units, swept, states, changes);
+        sweeps.inward::<CAUSES>(range.start..columns.end, beyond, swept, states, changes, &mut []);
+        sweeps.outward::<CAUSES>(range.clone(), units, swept, states, changes);
     }
 
     /// Adds the product of A⁻¹ with an entry of ∂f/∂q or of ∂f/∂v, by its place among both.
     #[inline(always)]
-    fn add_force<C: Columns>(&self, n: usize, place: usize, force: &C::Number, swept: &mut [Entry<C>]) {
+    fn add_force<C: Columns>(&self, n: usize, index: usize, force: &C::Number, swept: &mut [Entry<C>]) {
         // Most are: a division takes longer than all the rest of them.
         if force.is_zero() {
             return;
         }
-        let (row, j) = (place / n, place % n);
+        let (row, j) = (index / n, index % n);
         let (which, i) = if row < n { (1, row) } else { (2, row - n) };
         if !self.own.contains(&i) {
             return;
@@ -209,13 +209,13 @@ impl Piece {
     fn write<C: Columns>(&self, n: usize, matrices: &[usize], swept: &[Entry<C>], out: &mut [C::Lane]) {
         let zero = C::zero();
         for unit in self.units.clone() {
-            for (place, matrix) in matrices.iter().enumerate() {
+            for (index, matrix) in matrices.iter().enumerate() {
                 // A⁻¹ is symmetric.
                 if *matrix == 0 && C::STATES == 1 {
                     let first = self.columns.start + unit * C::WIDTH;
                     let count = C::WIDTH.min(self.columns.end - first);
                     for i in 0..n {
-                        let start = (place * n + i) * n + first;
+                        let start = (index * n + i) * n + first;
                         let Some(entry) = swept.get(i * self.stride + unit) else { break };
                         let (Some(to), lanes) = (out.get_mut(start..start + count), entry[0].as_ref()) else { break };
                         match to.first_chunk_mut::<8>().zip(lanes.first_chunk::<8>()) {
@@ -229,7 +229,7 @@ impl Piece {
                 for lane in 0..C::WIDTH * C::STATES {
                     let row = self.columns.start + unit * C::WIDTH + lane / C::STATES;
                     if row < self.columns.end {
-                        starts[lane] = ((lane % C::STATES * matrices.len() + place) * n + row) * n;
+                        starts[lane] = ((lane % C::STATES * matrices.len() + index) * n + row) * n;
                     }
                 }
                 for first in (0..n).step_by(8) {
@@ -259,7 +259,7 @@ impl Piece {
 pub fn places(numbers: &[f64]) -> impl Iterator<Item = usize> + Clone {
     let is_zero = |eight: &[f64]| eight.iter().fold(0, |bits, number| bits | number.to_bits()) << 1 == 0;
     let eights = numbers.chunks(8).enumerate().filter(move |(_, eight)| !is_zero(eight));
-    eights.flat_map(|(place, eight)| 8 * place..8 * place + eight.len())
+    eights.flat_map(|(index, eight)| 8 * index..8 * index + eight.len())
 }
 
 /// A⁻¹, row by row, of each state; `factors`: those of [`mass_factors`](crate::CraneModel::mass_factors), row by row.
@@ -293,8 +293,8 @@ pub fn residual_derivatives<C: Columns>(
     }
     let slopes = Slopes::<C>::new(links, factors, rows, &mut []);
     let (of_q, of_v) = derivatives.split_at_mut(derivatives.len() / 2);
-    for (place, added) in (0..5 * links.len()).filter_map(|k| slopes.diagonal(k)) {
-        if let Some(entry) = of_q.get_mut(place) {
+    for (index, added) in (0..5 * links.len()).filter_map(|k| slopes.diagonal(k)) {
+        if let Some(entry) = of_q.get_mut(index) {
             *entry = combine::<C, 2>([entry, added], |[entry, added]| entry + -added);
         }
     }
@@ -320,13 +320,13 @@ pub fn forward_dynamics_derivatives<C: Columns>(
     give_way(&mut sweeps, slopes.rows, changes, swept, &mut states);
     for piece in Piece::all::<C>(links, states.now.len()) {
         piece.sweep::<true, C>(&sweeps, swept, &mut states, changes);
-        for place in places.clone() {
-            if let Some(force) = forces.get(place) {
-                piece.add_force::<C>(n, place, force, swept);
+        for index in places.clone() {
+            if let Some(force) = forces.get(index) {
+                piece.add_force::<C>(n, index, force, swept);
             }
         }
-        for (place, added) in (0..5 * n).filter_map(|k| slopes.diagonal(k)) {
-            piece.add_force::<C>(n, place, &combine::<C, 1>([added], |[added]| -added), swept);
+        for (index, added) in (0..5 * n).filter_map(|k| slopes.diagonal(k)) {
+            piece.add_force::<C>(n, index, &combine::<C, 1>([added], |[added]| -added), swept);
         }
         piece.write::<C>(n, &[1, 2, 0], swept, derivatives);
     }

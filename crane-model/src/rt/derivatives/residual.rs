@@ -156,26 +156,26 @@ impl<'a, C: Columns> Slopes<'a, C> {
             let mut units = [C::zero(); 15];
             for lane in 0..C::WIDTH * C::STATES {
                 let own = Factors::<C>(&factors, lane).own();
-                for place in 0..15 {
-                    units[place].as_mut()[lane] = own[place];
+                for index in 0..15 {
+                    units[index].as_mut()[lane] = own[index];
                 }
             }
-            for place in 0..15 {
-                let numbers = spread::<C>(&units[place]);
+            for index in 0..15 {
+                let numbers = spread::<C>(&units[index]);
                 for column in 0..C::WIDTH {
                     let Some(own) = rows.get_mut(first + column) else { break };
-                    own[place] = numbers[column];
+                    own[index] = numbers[column];
                 }
             }
             if changes.is_empty() {
                 continue;
             }
             Self::vectors(&factors, &mut vectors);
-            for place in 0..15 {
-                let numbers = [spread::<C>(&vectors[0][place]), spread::<C>(&vectors[1][place])];
+            for index in 0..15 {
+                let numbers = [spread::<C>(&vectors[0][index]), spread::<C>(&vectors[1][index])];
                 for column in 0..C::WIDTH {
                     let Some(change) = changes.get_mut(first + column) else { break };
-                    (change.of[0][place], change.of[1][place]) = (numbers[0][column], numbers[1][column]);
+                    (change.of[0][index], change.of[1][index]) = (numbers[0][column], numbers[1][column]);
                 }
             }
         }
@@ -195,8 +195,8 @@ impl<'a, C: Columns> Slopes<'a, C> {
         for lane in 0..C::WIDTH * C::STATES {
             let vectors = Factors::<C>(factors, lane).vectors();
             for which in 0..2 {
-                for place in 0..15 {
-                    units[which][place].as_mut()[lane] = vectors[which][place];
+                for index in 0..15 {
+                    units[which][index].as_mut()[lane] = vectors[which][index];
                 }
             }
         }
@@ -278,8 +278,8 @@ pub(super) fn mark_paths<C: Columns>(links: &[Link], paths: &mut [C::Number]) {
     for j in 0..n {
         let mut reached = Some(j);
         while let Some(i) = reached {
-            for place in [i * n + j, j * n + i] {
-                if let Some(flag) = paths.get_mut(place) {
+            for index in [i * n + j, j * n + i] {
+                if let Some(flag) = paths.get_mut(index) {
                     *flag = C::Number::constant(1.0);
                 }
             }

@@ -170,9 +170,9 @@ impl<'a, C: Columns> Sweeps<'a, C> {
     pub(super) fn new(links: &'a [Link], factors: &[C::Number], joints: &'a mut [Joint<C>]) -> Self {
         for j in 0..links.len() {
             let Some(joint) = joints.get_mut(j) else { break };
-            for place in 0..mass::ANSWER {
-                if let Some(factor) = factors.get(place * links.len() + j) {
-                    joint.own[place] = *factor;
+            for index in 0..mass::ANSWER {
+                if let Some(factor) = factors.get(index * links.len() + j) {
+                    joint.own[index] = *factor;
                 }
             }
         }
@@ -283,9 +283,9 @@ fn copy<C: Columns>(from: &[Carried<C>], to: &mut [Carried<C>]) {
 fn add<C: Columns>(places: &mut [Carried<C>], other: &[Carried<C>]) {
     for k in 0..places.len().min(other.len()) {
         let (mut sums, others) = (places[k], other[k]);
-        for place in 0..9 {
+        for index in 0..9 {
             for lane in 0..C::WIDTH * C::STATES {
-                sums[place].as_mut()[lane] = sums[place].as_ref()[lane] + others[place].as_ref()[lane];
+                sums[index].as_mut()[lane] = sums[index].as_ref()[lane] + others[index].as_ref()[lane];
             }
         }
         places[k] = sums;

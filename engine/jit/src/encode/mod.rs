@@ -34,7 +34,7 @@ fn loops(instructions: &[Instruction]) -> Vec<std::collections::BTreeSet<i32>> {
         if let Instruction::Begin(_) = instruction {
             loops.push(std::collections::BTreeSet::new());
         }
-        let steps = instruction.places().map(|place| place.step).filter(|step| *step != 0);
+        let steps = instruction.places().map(|location| location.step).filter(|step| *step != 0);
         if let Some(own) = loops.last_mut() {
             own.extend(steps);
         }

@@ -96,8 +96,8 @@ impl Encoder {
     /// Keeps the registers that a call must keep, and points others at the windows that are used most.
     fn open_windows(&mut self, instructions: &[Instruction], registers: &[General], moving: &[General]) {
         let mut accesses: HashMap<i32, usize> = HashMap::new();
-        for place in instructions.iter().flat_map(Instruction::places).filter(|place| place.step == 0) {
-            *accesses.entry(place.at / WINDOW).or_default() += 1;
+        for location in instructions.iter().flat_map(Instruction::places).filter(|location| location.step == 0) {
+            *accesses.entry(location.at / WINDOW).or_default() += 1;
         }
         // With eight numbers, a window would hold four places.
         let is_worth_it = |(_, count): &(i32, usize)| *count >= LEAST_ACCESSES && self.lanes == Lanes::One;
@@ -184,21 +184,21 @@ impl Encoder {
     }
 
     /// The operand of a place in the frame.
-    fn memory(&self, place: Location) -> Last {
-        let window = place.at / WINDOW;
-        if let Some(register) = self.moving.get(&place.step) {
-            return Last::Memory(*register, place.at * self.stride());
+    fn memory(&self, location: Location) -> Last {
+        let window = location.at / WINDOW;
+        if let Some(register) = self.moving.get(&location.step) {
+            return Last::Memory(*register, location.at * self.stride());
         }
         match self.windows.get(&window) {
-            Some(register) => Last::Memory(*register, place.at * self.stride() - self.middle(window)),
-            None => Last::Memory(FRAME, place.at * self.stride()),
+            Some(register) => Last::Memory(*register, location.at * self.stride() - self.middle(window)),
+            None => Last::Memory(FRAME, location.at * self.stride()),
         }
     }
 
     fn operand(&self, operand: Operand) -> Last {
         match operand {
             Operand::Register(register) => Last::Register(register),
-            Operand::Memory(place) => self.memory(place),
+            Operand::Memory(location) => self.memory(location),
         }
     }
 

@@ -370,11 +370,11 @@ struct Copies {
 impl Copies {
     fn new(writer: &LineWriter, copied: &[Operand]) -> Self {
         let mut copies = Copies { waiting: FxHashMap::default(), known: vec![] };
-        for (place, operand) in copied.iter().enumerate() {
+        for (index, operand) in copied.iter().enumerate() {
             match (writer.fixed_value(*operand), *operand) {
-                (Some(value), _) => copies.known.push(Step::Store { place, value }),
+                (Some(value), _) => copies.known.push(Step::Store { place: index, value }),
                 (None, Operand::Value(Signed { id, negative })) => {
-                    copies.waiting.entry(id).or_default()[usize::from(negative)].push(place);
+                    copies.waiting.entry(id).or_default()[usize::from(negative)].push(index);
                 }
                 (None, Operand::Number(_)) => {}
             }
@@ -387,7 +387,7 @@ impl Copies {
         let Some(places) = self.waiting.remove(&id) else { return };
         for (places, value) in places.into_iter().zip(writer.values[id.index()]) {
             let Some(value) = value else { continue };
-            self.known.extend(places.into_iter().map(|place| Step::Store { place, value }));
+            self.known.extend(places.into_iter().map(|index| Step::Store { place: index, value }));
         }
         if self.known.len() >= BATCH {
             self.flush(writer);

@@ -24,8 +24,8 @@ pub fn assign(line: &AssembledLine) -> Code {
         results: line.results,
     };
     let mut instructions: Vec<WideInstruction> = vec![];
-    for (place, step) in line.steps.iter().enumerate() {
-        let is_last = |value: &Value| *value >= line.fixed.len() && last_reads[*value] == Some(place);
+    for (index, step) in line.steps.iter().enumerate() {
+        let is_last = |value: &Value| *value >= line.fixed.len() && last_reads[*value] == Some(index);
         let mut ending: Vec<Value> = step.reads().filter(is_last).collect();
         ending.sort_unstable();
         ending.dedup();
@@ -62,8 +62,8 @@ pub fn assign(line: &AssembledLine) -> Code {
                 instructions.extend([WideInstruction([c0, a, c1, c2]), WideInstruction([c3, a, c4, c5])]);
                 Kind::Stumpff
             }
-            Step::Store { place, .. } => {
-                code.stores.push(Store { place: u32::try_from(place).unwrap_or(u32::MAX), register: a });
+            Step::Store { place: index, .. } => {
+                code.stores.push(Store { place: u32::try_from(index).unwrap_or(u32::MAX), register: a });
                 Kind::Store
             }
         };
@@ -81,9 +81,9 @@ pub fn assign(line: &AssembledLine) -> Code {
 /// For every value, the last step that reads it.
 fn last_reads(line: &AssembledLine) -> Vec<Option<usize>> {
     let mut last = vec![None; line.values];
-    for (place, step) in line.steps.iter().enumerate() {
+    for (index, step) in line.steps.iter().enumerate() {
         for value in step.reads() {
-            last[value] = Some(place);
+            last[value] = Some(index);
         }
     }
     last

@@ -149,10 +149,10 @@ fn spread<T: Entry>(results: &[f64x8], parts: impl Iterator<Item = usize>, out: 
         let items = results.get(first * T::LEN..(first + count) * T::LEN);
         let places = out.get_mut(CRANES * first..CRANES * (first + count));
         let (Some(items), Some(places)) = (items, places) else { break };
-        for (place, entry) in places.iter_mut().enumerate() {
+        for (index, entry) in places.iter_mut().enumerate() {
             let mut numbers = [0.0; 16];
-            let item = &items[place % count * T::LEN..][..T::LEN];
-            numbers.iter_mut().zip(item).for_each(|(number, vector)| *number = vector.lane(place / count));
+            let item = &items[index % count * T::LEN..][..T::LEN];
+            numbers.iter_mut().zip(item).for_each(|(number, vector)| *number = vector.lane(index / count));
             *entry = T::from_numbers(&numbers);
         }
         first += count;

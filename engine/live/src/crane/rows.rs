@@ -251,8 +251,8 @@ fn spread<T: Batch>(numbers: &[T], width: usize, out: &mut [f64]) {
             }
         }
     }
-    for (place, number) in (8 * eights.len()..).zip(rest) {
-        out.chunks_mut(width.max(1)).enumerate().for_each(|(lane, row)| row[place] = number.lane(lane));
+    for (index, number) in (8 * eights.len()..).zip(rest) {
+        out.chunks_mut(width.max(1)).enumerate().for_each(|(lane, row)| row[index] = number.lane(lane));
     }
 }
 
@@ -318,7 +318,7 @@ impl<T: Number> Call<T> {
             (_, Some(places)) => {
                 routine.run(&mut self.machine, &arguments, &mut self.factors);
                 for (out, place) in out.iter_mut().zip(places) {
-                    *out = place.map_or(T::splat(0.0), |place| self.factors[place]);
+                    *out = place.map_or(T::splat(0.0), |index| self.factors[index]);
                 }
             }
             (_, None) => routine.run(&mut self.machine, &arguments, out),
@@ -348,7 +348,7 @@ impl LiveCrane {
 /// Where a function's result contains the numbers of transforms or their derivatives, whose matrices it writes column by column.
 fn places(crane: &LiveCrane, n: usize, id: FunctionId) -> Option<Vec<Option<usize>>> {
     let bodies = &crane.description().bodies;
-    let row_by_row = |matrix: usize| (0..16).map(move |place| 16 * matrix + 4 * (place % 4) + place / 4);
+    let row_by_row = |matrix: usize| (0..16).map(move |index| 16 * matrix + 4 * (index % 4) + index / 4);
     match id {
         FunctionId::Transforms => Some((0..bodies.len()).flat_map(row_by_row).map(Some).collect()),
         FunctionId::TransformDerivatives => {

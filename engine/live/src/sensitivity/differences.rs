@@ -63,18 +63,18 @@ impl FixedNumber {
     pub fn differentiate(
         &self,
         crane: &LiveCrane,
-        found: &Sensitivity,
+        sensitivity: &Sensitivity,
         settings: &Settings,
     ) -> Result<Differences, Failed> {
         let at = |other: &LiveCrane| -> Result<Vec<f64>, Failed> {
-            let other = sensitivity_near(&like(crane, other), &[], settings, &found.q)?;
+            let other = sensitivity_near(&like(crane, other), &[], settings, &sensitivity.q)?;
             let value = |name: &str| other.index_of(name).map_or(f64::NAN, |index| other.values[index]);
-            Ok(found.outputs.iter().map(|output| value(&output.name)).chain(other.q.iter().copied()).collect())
+            Ok(sensitivity.outputs.iter().map(|output| value(&output.name)).chain(other.q.iter().copied()).collect())
         };
         let [first, second, third, fourth] = self.around.each_ref().map(at);
         let mut all = Differences::central([first?, second?, third?, fourth?], self.step);
-        all.pose = all.derivatives.split_off(found.outputs.len());
-        all.errors.truncate(found.outputs.len());
+        all.pose = all.derivatives.split_off(sensitivity.outputs.len());
+        all.errors.truncate(sensitivity.outputs.len());
         Ok(all)
     }
 }
@@ -84,7 +84,7 @@ fn like(crane: &LiveCrane, other: &LiveCrane) -> LiveCrane {
     let inputs: Vec<Option<f64>> = (0..crane.description().inputs.len()).map(|index| crane.input(index)).collect();
     let mut other = other.clone().with_inputs(&inputs);
     for (index, info) in crane.description().parameters.iter().enumerate() {
-        let own = other.description().parameters.iter().position(|own| own.name == info.name);
+        let own = other.description().parameters.iter().position(|parameter| parameter.name == info.name);
         if let Some(own) = own {
             // The crane itself has this value; it is allowed here too, or the crane keeps its own.
             let _ = other.set_parameter(own, crane.parameters()[index]);

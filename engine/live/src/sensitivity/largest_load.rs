@@ -79,13 +79,13 @@ impl LargestLoad {
     ///
     /// # Errors
     /// There is none.
-    pub fn new(crane: &LiveCrane, asked: &Envelope) -> Result<Self, NoLargestLoad> {
+    pub fn new(crane: &LiveCrane, envelope: &Envelope) -> Result<Self, NoLargestLoad> {
         let found: Mutex<Option<Rating>> = Mutex::new(None);
         let done = |_: usize, ratings: &[Rating]| {
             *found.lock().unwrap_or_else(PoisonError::into_inner) = ratings.first().cloned();
         };
         let execution = Execution { threads: 1, done: &done, cancelled: &|| false };
-        asked.run(crane, &[0], &execution).map_err(|refused| NoLargestLoad::Refused(refused.to_string()))?;
+        envelope.run(crane, &[0], &execution).map_err(|refused| NoLargestLoad::Refused(refused.to_string()))?;
         let rating = found.into_inner().unwrap_or_else(PoisonError::into_inner);
         match rating {
             Some(Rating { load: Some(load), governing: Some(limit), loaded: Some(condition), .. }) => {
@@ -110,31 +110,31 @@ impl LargestLoad {
     /// `None` where no output is at its bound, so that the load has no exact derivatives; nothing is changed then except that list.
     pub fn add_to(
         &self,
-        found: &mut Sensitivity,
+        sensitivity: &mut Sensitivity,
         crane: &LiveCrane,
-        asked: &Envelope,
-        place: usize,
+        envelope: &Envelope,
+        index: usize,
         fixed: &[FixedNumber],
     ) -> Option<()> {
-        let bound = self.bounded(found, crane);
-        let by_load = found.derivatives.remove(place);
-        found.pose.remove(place);
-        found.parameters.remove(place);
+        let bound = self.bounded(sensitivity, crane);
+        let by_load = sensitivity.derivatives.remove(index);
+        sensitivity.pose.remove(index);
+        sensitivity.parameters.remove(index);
         let Bounded { output, sign } = bound?;
-        let limit_of = |crane: &LiveCrane| asked.limits.with_max_efforts(crane).bound(self.limit, crane.description());
+        let limit_of = |crane: &LiveCrane| envelope.limits.with_max_efforts(crane).bound(self.limit, crane.description());
         let limit = limit_of(crane)?;
-        let slope = sign * by_load[output] * asked.factor;
-        let correction = -(sign * found.values[output] - limit) / slope;
+        let slope = sign * by_load[output] * envelope.factor;
+        let correction = -(sign * sensitivity.values[output] - limit) / slope;
         if !slope.is_finite() || slope == 0.0 || correction.abs() > SMALL * self.load.abs() {
             return None;
         }
-        let numbers: Vec<Changing<'_>> = changing(found, fixed).collect();
-        for (number, derivatives) in numbers.into_iter().zip(&mut found.derivatives) {
+        let numbers: Vec<Changing<'_>> = changing(sensitivity, fixed).collect();
+        for (number, derivatives) in numbers.into_iter().zip(&mut sensitivity.derivatives) {
             let own = -(sign * derivatives[output] - number.slope(crane, limit_of)) / slope;
             derivatives.push(own);
         }
-        found.values.push(self.load + correction);
-        found.outputs.push(self.output(crane, asked));
+        sensitivity.values.push(self.load + correction);
+        sensitivity.outputs.push(self.output(crane, envelope));
         Some(())
     }
 
@@ -144,27 +144,27 @@ impl LargestLoad {
     /// With a number slightly smaller or larger there is no largest load.
     pub fn add_differences(
         &self,
-        found: &mut Sensitivity,
+        sensitivity: &mut Sensitivity,
         crane: &LiveCrane,
-        asked: &Envelope,
+        envelope: &Envelope,
         fixed: &[FixedNumber],
     ) -> Result<Vec<f64>, NoLargestLoad> {
         let mut errors = Vec::new();
-        let numbers: Vec<Changing<'_>> = changing(found, fixed).collect();
-        for (number, all) in numbers.into_iter().zip(&mut found.derivatives) {
+        let numbers: Vec<Changing<'_>> = changing(sensitivity, fixed).collect();
+        for (number, all) in numbers.into_iter().zip(&mut sensitivity.derivatives) {
             let value = number.value(crane);
             let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
             let at = |share: f64| {
                 let other = number.change(crane, share * step).map_err(NoLargestLoad::Refused)?;
-                Ok(Self::new(&other, asked)?.load)
+                Ok(Self::new(&other, envelope)?.load)
             };
             let Differences { derivatives, errors: own, .. } =
                 Differences::central([at(-1.0)?, at(-0.5)?, at(0.5)?, at(1.0)?].map(|load| vec![load]), step);
             all.push(derivatives[0]);
             errors.push(own[0]);
         }
-        found.values.push(self.load);
-        found.outputs.push(self.output(crane, asked));
+        sensitivity.values.push(self.load);
+        sensitivity.outputs.push(self.output(crane, envelope));
         Ok(errors)
     }
 
@@ -173,24 +173,24 @@ impl LargestLoad {
     #[must_use]
     pub fn cautions(
         &self,
-        found: &Sensitivity,
+        sensitivity: &Sensitivity,
         crane: &LiveCrane,
-        asked: &Envelope,
+        envelope: &Envelope,
         fixed: &[FixedNumber],
         steps: &[f64],
     ) -> Vec<String> {
         let mut words = Vec::new();
-        let Some(output) = found.index_of(NAME) else { return words };
-        let unit = found.outputs[output].unit;
-        for ((place, number), step) in changing(found, fixed).enumerate().zip(steps) {
+        let Some(output) = sensitivity.index_of(NAME) else { return words };
+        let unit = sensitivity.outputs[output].unit;
+        for ((index, number), step) in changing(sensitivity, fixed).enumerate().zip(steps) {
             let [name, of_number] = number.label(crane);
             let with = format!("with {name} at {}", in_unit(number.value(crane) + step, of_number));
             let Ok(other) = number.change(crane, *step) else {
                 words.push(format!("{with} it breaks a rule of the spec"));
                 continue;
             };
-            let straight = found.derivatives[place][output] * step;
-            match Self::new(&other, asked) {
+            let straight = sensitivity.derivatives[index][output] * step;
+            match Self::new(&other, envelope) {
                 Err(none) => words.push(format!("{with}, {}", none.words(&other, unit))),
                 Ok(then) if then.limit != self.limit => words.push(format!(
                     "{with}, the largest load is {}, limited by {}: it changes by {} instead of {}",
@@ -212,14 +212,14 @@ impl LargestLoad {
         words
     }
 
-    fn output(&self, crane: &LiveCrane, asked: &Envelope) -> Output {
-        let unit = crane.description().parameters[asked.load].unit.as_str();
+    fn output(&self, crane: &LiveCrane, envelope: &Envelope) -> Output {
+        let unit = crane.description().parameters[envelope.load].unit.as_str();
         let unit = UNITS_OF_LOADS.into_iter().find(|own| *own == unit).unwrap_or_default();
         Output { name: NAME.to_owned(), unit, group: Group::Load, place: self.words(crane) }
     }
 
     /// The output that is at its bound; `None` if there is none.
-    fn bounded(&self, found: &Sensitivity, crane: &LiveCrane) -> Option<Bounded> {
+    fn bounded(&self, sensitivity: &Sensitivity, crane: &LiveCrane) -> Option<Bounded> {
         let description = crane.description();
         let of_cylinder = |kind, cylinder: usize| Some(column_name(kind, &description.cylinders[cylinder].name, false));
         let name = match self.limit {
@@ -240,11 +240,11 @@ impl LargestLoad {
             Limit::Slack { rope } | Limit::Tension { rope } => Some(connector_force(&description.connectors[rope])),
             Limit::Equilibrium | Limit::Deflection { .. } | Limit::Stop { .. } | Limit::Overlap { .. } => None,
         };
-        let output = found.index_of(&name?)?;
+        let output = sensitivity.index_of(&name?)?;
         // Another line may have the least margin.
         let is_line = matches!(self.limit, Limit::Tipping { .. });
-        let is_same = !is_line || found.outputs[output].place == self.limit.location(crane);
-        let sign = if matches!(self.limit, Limit::Effort { .. }) { found.values[output].signum() } else { 1.0 };
+        let is_same = !is_line || sensitivity.outputs[output].place == self.limit.location(crane);
+        let sign = if matches!(self.limit, Limit::Effort { .. }) { sensitivity.values[output].signum() } else { 1.0 };
         is_same.then_some(Bounded { output, sign })
     }
 }
@@ -256,7 +256,7 @@ struct Bounded {
 }
 
 /// The numbers of the lists of derivatives.
-fn changing<'a>(found: &Sensitivity, fixed: &'a [FixedNumber]) -> impl Iterator<Item = Changing<'a>> {
-    let parameters: Vec<usize> = found.parameters.clone();
+fn changing<'a>(sensitivity: &Sensitivity, fixed: &'a [FixedNumber]) -> impl Iterator<Item = Changing<'a>> {
+    let parameters: Vec<usize> = sensitivity.parameters.clone();
     parameters.into_iter().map(Changing::Parameter).chain(fixed.iter().map(Changing::Fixed))
 }

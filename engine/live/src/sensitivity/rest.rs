@@ -84,9 +84,9 @@ impl Rest {
         }
         if !self.independent.is_empty() {
             let rows = source.at(FunctionId::LoopJacobians, &constants(&self.q));
-            for (place, equation) in self.independent.iter().enumerate() {
+            for (index, equation) in self.independent.iter().enumerate() {
                 for (row, coordinate) in self.unknowns.iter().enumerate() {
-                    matrix[(row, free + place)] = rows[equation * n + coordinate].value();
+                    matrix[(row, free + index)] = rows[equation * n + coordinate].value();
                 }
             }
         }

@@ -29,10 +29,10 @@ fn link(sections: usize, joint: &str) -> String {
 /// The coordinates at rest, by name.
 fn at_rest(crane: &LiveCrane) -> Vec<(String, f64)> {
     let crane: &dyn DynCrane = crane;
-    let found = crane.equilibrium(&statics::Settings::default());
-    assert!(found.is_stable(), "{found}");
+    let equilibrium = crane.equilibrium(&statics::Settings::default());
+    assert!(equilibrium.is_stable(), "{equilibrium}");
     let names = crane.description().coordinates.iter().map(|coordinate| coordinate.name.to_string());
-    names.zip(found.q).collect()
+    names.zip(equilibrium.q).collect()
 }
 
 /// Sum of the angles of all springs about an axis.

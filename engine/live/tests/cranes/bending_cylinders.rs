@@ -54,9 +54,9 @@ run: {{duration: 1, output: 0.01}}
 }
 
 fn rest(crane: &dyn DynCrane) -> Vec<f64> {
-    let found = crane.equilibrium(&statics::Settings::default());
-    assert!(found.is_stable(), "{found}");
-    found.q
+    let equilibrium = crane.equilibrium(&statics::Settings::default());
+    assert!(equilibrium.is_stable(), "{equilibrium}");
+    equilibrium.q
 }
 
 fn names(crane: &dyn DynCrane) -> Vec<String> {
@@ -200,12 +200,12 @@ fn statics_hold_cylinders_at_given_positions() {
     let (crane, other) = (boom("{hold: 0.4}"), boom("{hold: 0.7}"));
     let (crane, other): (&dyn DynCrane, &dyn DynCrane) = (&crane, &other);
     let expected = rest(other);
-    let found = statics::Problem::new(crane).holding(&[0.0, 0.7]).from(&rest(crane)).solve();
-    assert!(found.is_stable(), "{found}");
-    for (found, expected) in found.q.iter().zip(&expected) {
-        assert!((found - expected).abs() < 1e-10, "{found} for {expected}");
+    let equilibrium = statics::Problem::new(crane).holding(&[0.0, 0.7]).from(&rest(crane)).solve();
+    assert!(equilibrium.is_stable(), "{equilibrium}");
+    for (value, expected) in equilibrium.q.iter().zip(&expected) {
+        assert!((value - expected).abs() < 1e-10, "{value} for {expected}");
     }
-    let efforts = crane.drive_efforts_holding(0.0, &[0.0, 0.7], &found.q);
+    let efforts = crane.drive_efforts_holding(0.0, &[0.0, 0.7], &equilibrium.q);
     let meant = other.drive_efforts_at_rest(&expected);
     assert!((efforts[1] / meant[1] - 1.0).abs() < 1e-8, "{efforts:?} for {meant:?}");
 }

@@ -103,9 +103,9 @@ fn a_joint_sticks_and_slides() {
             "analyses: [dynamics]\ndrives: [{{coordinate: slide_x, stiffness: 1e6, damping: 2e4, motion: {motion}}}]"
         ));
         let table = record(&crane, Method::Bdf, 4.0);
-        let found = *column(&table, "slide_x_friction_force").last().expect("a row");
+        let value = *column(&table, "slide_x_friction_force").last().expect("a row");
         let level = COULOMB + (BREAKAWAY - COULOMB) * (-(speed / STRIBECK).powi(2)).exp();
-        assert!((found + level + VISCOUS * speed).abs() < 1e-6 * level, "{found} for {level}");
+        assert!((value + level + VISCOUS * speed).abs() < 1e-6 * level, "{value} for {level}");
         let z = *column(&table, "slide_x_bristle").last().expect("a row");
         assert!((z * STIFFNESS / level - 1.0).abs() < 1e-6, "{z}");
     }

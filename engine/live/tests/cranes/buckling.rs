@@ -130,13 +130,13 @@ fn the_second_order_of_a_column_is_that_of_timoshenko() {
         // The top also sinks, by squares of its angle; 16 sections buckle at 0.25 % of Euler's load away.
         let deflection = across * length.powi(3) / (3.0 * stiffness);
         let [first, second] = points[0].map(|moved| moved.x);
-        for (found, exact, tolerance) in [
+        for (value, exact, tolerance) in [
             (first, deflection, 2e-3),
             (second / first, of_deflection, 5e-3),
             (moments[0], across * length, 1e-3),
             (moments[1] / moments[0], u.tan() / u, 5e-3),
         ] {
-            assert!((found / exact - 1.0).abs() < tolerance, "{part}: {found}, not {exact}");
+            assert!((value / exact - 1.0).abs() < tolerance, "{part}: {value}, not {exact}");
         }
         assert!((of_deflection * (1.0 - part) - 1.0).abs() < 0.02, "the rule of thumb");
     }

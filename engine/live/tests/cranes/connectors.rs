@@ -122,12 +122,12 @@ fn a_spring_between_two_links_does_virtual_work() {
     let slopes = [0, 1, 2].map(slope);
     let rate: f64 = slopes.iter().zip(v).map(|(slope, v)| slope * v).sum();
     let force = 700.0 * (length(q) - 0.9) + 40.0 * rate;
-    let [found, found_rate] = arms.connector_lengths_at(&q, &v)[0];
-    assert!((found - length(q)).abs() < 1e-14 && (found_rate - rate).abs() < tolerance);
+    let [value, found_rate] = arms.connector_lengths_at(&q, &v)[0];
+    assert!((value - length(q)).abs() < 1e-14 && (found_rate - rate).abs() < tolerance);
     let mut forces = [f64::NAN; 3];
     arms.connector_forces(0.0, &q, &v, &mut forces);
-    for (found, slope) in forces.iter().zip(slopes) {
-        assert!((found + force * slope).abs() < tolerance * force.abs(), "{found} instead of {}", -force * slope);
+    for (value, slope) in forces.iter().zip(slopes) {
+        assert!((value + force * slope).abs() < tolerance * force.abs(), "{value} instead of {}", -force * slope);
     }
     assert_eq!(forces[0], 0.0);
 }
@@ -233,8 +233,8 @@ fn a_rope_goes_past_the_joint() {
     for (cut, wrench) in boom.description().cuts().into_iter().zip(boom.internal_forces_at(0.0, &q, &still, &still)) {
         let force =
             if cut == Cut::Ground { [-thrust * q[0].cos(), 0.0, -thrust * q[0].sin()] } else { [-thrust, 0.0, 0.0] };
-        for (found, expected) in wrench.force.iter().zip(force) {
-            assert!((found - expected).abs() < 1e-8 * thrust, "{cut:?}: {found} instead of {expected}");
+        for (value, expected) in wrench.force.iter().zip(force) {
+            assert!((value - expected).abs() < 1e-8 * thrust, "{cut:?}: {value} instead of {expected}");
         }
         assert!(wrench.moment.amax() < 1e-7 * thrust, "{cut:?}: {:?}", wrench.moment);
     }

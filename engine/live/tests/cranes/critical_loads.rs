@@ -49,9 +49,9 @@ fn truck(feet: Feet, stiffness: f64, slew: f64, drive: &str) -> LiveCrane {
 /// The vertical forces of the feet with a load, as statics finds them; `None` where the crane does not rest.
 fn forces(crane: &mut dyn DynCrane, load: f64) -> Option<Vec<f64>> {
     crane.set_parameter(0, load).unwrap();
-    let found = crane.equilibrium(&Settings::default());
-    let rest = vec![0.0; found.q.len()];
-    found.is_stable().then(|| crane.support_reactions_at(&found.q, &rest).iter().map(|force| force.z).collect())
+    let equilibrium = crane.equilibrium(&Settings::default());
+    let rest = vec![0.0; equilibrium.q.len()];
+    equilibrium.is_stable().then(|| crane.support_reactions_at(&equilibrium.q, &rest).iter().map(|force| force.z).collect())
 }
 
 /// Where a property of loads changes, by bisection.
@@ -81,14 +81,14 @@ fn the_first_foot_lifts_where_statics_says() {
                 let mut all = Vec::new();
                 for start in [10.0, 500.0, 1500.0, 2150.0, 6000.0] {
                     crane.set_parameter(0, start).unwrap();
-                    let found = critical_load(crane, 0, Critical::FirstFoot).expect("a load");
+                    let critical_load = critical_load(crane, 0, Critical::FirstFoot).expect("a load");
                     // Statics leaves 1e-10 of the forces, about 1e-5 N of a foot that changes by 5 N for each kg.
                     assert!(
-                        (found.load / truth - 1.0).abs() < 1e-6,
+                        (critical_load.load / truth - 1.0).abs() < 1e-6,
                         "feet of {stiffness:e} N/m, slewed by {slew}°, from {start} kg: {} instead of {truth}",
-                        found.load
+                        critical_load.load
                     );
-                    all.push(found);
+                    all.push(critical_load);
                 }
                 assert!(all.iter().all(|found| *found == all[0]), "{all:?}");
                 // The foot that lifts is the one that carries least just before.
@@ -104,21 +104,21 @@ fn the_first_foot_lifts_where_statics_says() {
 /// margin. From the guess, statics misses some poses just below the limit.
 fn stands(crane: &mut dyn DynCrane, from: f64, load: f64) -> bool {
     crane.set_parameter(0, from).unwrap();
-    let mut found = crane.equilibrium(&Settings::default());
-    assert!(found.is_stable(), "{from}: {found}");
-    let start = found.q.clone();
+    let mut equilibrium = crane.equilibrium(&Settings::default());
+    assert!(equilibrium.is_stable(), "{from}: {equilibrium}");
+    let start = equilibrium.q.clone();
     let rest = vec![0.0; start.len()];
     // Steps that become shorter towards the end, where the pose changes fastest.
     for step in 1..=24 {
         let part = if step == 24 { 1.0 } else { 1.0 - 0.5f64.powi(step) };
         crane.set_parameter(0, from + part * (load - from)).unwrap();
-        let next = Problem::new(&*crane).from(&found.q).solve();
+        let next = Problem::new(&*crane).from(&equilibrium.q).solve();
         let margin =
             governing(&lines(crane, 0.0, &next.q, &rest, &rest)).map_or(1.0, crane_model::tipping::TippingLine::margin);
         if !next.is_stable() || crane.description().has_tipped(&start, &next.q) || margin < 0.0 {
             return false;
         }
-        found = next;
+        equilibrium = next;
     }
     true
 }
@@ -251,9 +251,9 @@ fn a_slack_rope_does_not_raise_the_load_that_tips() {
             "connectors: [{{name: guy, from: {{at: [-3, 1, 5]}}, to: {{link: boom, at: [2.5, 0, 0]}}, law: {{rope: {{stiffness: 1e5, length: {length}}}}}}}]\n"
         );
         let mut crane = held_truck(300.0, &rope);
-        let found = critical_load(&mut crane, 0, Critical::Tipping).unwrap();
-        assert!((found.load / 6_264.869_851 - 1.0).abs() < 2e-8, "{length}: {found:?}");
-        assert_eq!(found.location, "fr – fl");
+        let critical_load = critical_load(&mut crane, 0, Critical::Tipping).unwrap();
+        assert!((critical_load.load / 6_264.869_851 - 1.0).abs() < 2e-8, "{length}: {critical_load:?}");
+        assert_eq!(critical_load.location, "fr – fl");
     }
 }
 
@@ -264,15 +264,15 @@ fn a_crane_on_two_feet_and_a_rope_has_tipped() {
     for payload in [6500.0, 7000.0, 7500.0, 8000.0] {
         let crane = held_truck(payload, rope);
         let crane: &dyn DynCrane = &crane;
-        let found = crane.equilibrium(&Settings::default());
-        assert!(found.is_stable(), "{payload}: {found}");
-        let rest = vec![0.0; found.q.len()];
-        let forces = crane.support_reactions_at(&found.q, &rest).iter().map(|force| force.z > 0.0).collect::<Vec<_>>();
+        let equilibrium = crane.equilibrium(&Settings::default());
+        assert!(equilibrium.is_stable(), "{payload}: {equilibrium}");
+        let rest = vec![0.0; equilibrium.q.len()];
+        let forces = crane.support_reactions_at(&equilibrium.q, &rest).iter().map(|force| force.z > 0.0).collect::<Vec<_>>();
         assert_eq!(forces, [true, true, false, false], "{payload}");
-        let lines = lines(crane, 0.0, &found.q, &rest, &rest);
+        let lines = lines(crane, 0.0, &equilibrium.q, &rest, &rest);
         let line = governing(&lines).unwrap();
         assert!(line.has_tipped && line.margin() <= 0.0, "{payload}: {line:?}");
-        let words = cautions::of_pose(crane, &found.q, cautions::BEND).join("\n");
+        let words = cautions::of_pose(crane, &equilibrium.q, cautions::BEND).join("\n");
         assert!(words.contains("tips over the line fr – fl: no other foot carries anything"), "{payload}: {words}");
     }
 }

@@ -62,8 +62,8 @@ fn a_curved_cantilever_converges_with_order_two() {
             let exact = FORCE * RADIUS.powi(3) / MODULUS * (bending + torsion / ratio);
             let force = normal.map(|share| FORCE * share);
             let error = |sections: usize| {
-                let found = deflection(&arc(sections, &bend, *ratio, force, "")).dot(&Vector3::from(normal));
-                (found / exact - 1.0).abs()
+                let value = deflection(&arc(sections, &bend, *ratio, force, "")).dot(&Vector3::from(normal));
+                (value / exact - 1.0).abs()
             };
             let [coarse, fine] = [4, 32].map(error);
             let order = (coarse / fine).log2() / 3.0;

@@ -200,9 +200,9 @@ cylinders:
             at(&crane, &moved, &v).length
         };
         // Central differences: the third derivative times 1e-10, and rounding over 1e-5.
-        for (found, of) in [(state.speed, &along as &dyn Fn(f64) -> f64), (state.arm, &by_joint)] {
+        for (value, of) in [(state.speed, &along as &dyn Fn(f64) -> f64), (state.arm, &by_joint)] {
             let slope = (of(1e-5) - of(-1e-5)) / 2e-5;
-            assert!((found - slope).abs() < 1e-8, "{seed}: {found} for {slope}");
+            assert!((value - slope).abs() < 1e-8, "{seed}: {value} for {slope}");
         }
     }
 }
@@ -239,10 +239,10 @@ fn limits_of_cylinders_are_cautions() {
     let state = at(&oily, &[0.0, 0.0], &[0.0; 2]);
     let ([piston, ring], y) = (areas(), state.length - 0.9);
     let stiffness = 2e8 * (piston * piston / (1e-3 + piston * y) + ring * ring / (2e-3 + ring * (0.6 - y)));
-    let found = state.oil_stiffness(info).expect("there is oil");
-    assert!((found / (stiffness * state.arm * state.arm) - 1.0).abs() < 1e-14, "{found}");
+    let value = state.oil_stiffness(info).expect("there is oil");
+    assert!((value / (stiffness * state.arm * state.arm) - 1.0).abs() < 1e-14, "{value}");
     let caution = cautions::of_pose(&oily, &[0.0, 0.0], 20.0).join("; ");
-    let ratio = format!("the drive of arm_theta is {:.1} times as stiff as the oil in lift", 1e7 / found);
+    let ratio = format!("the drive of arm_theta is {:.1} times as stiff as the oil in lift", 1e7 / value);
     assert!(caution.contains(&ratio), "{caution}");
     assert!(at(&short, &[0.0, 0.0], &[0.0; 2]).oil_stiffness(&short.description().cylinders[0]).is_none());
 }

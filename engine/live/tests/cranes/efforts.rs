@@ -78,9 +78,9 @@ fn computed_torques_give_their_accelerations() {
     }
     let mut found = [0.0_f64; 2];
     arm.forward_dynamics(0.0, &q, &v, &mut found);
-    for (found, wanted) in found.iter().zip(wanted) {
+    for (value, wanted) in found.iter().zip(wanted) {
         // Rounding.
-        assert!((found - wanted).abs() < 1e-12, "{found} instead of {wanted}");
+        assert!((value - wanted).abs() < 1e-12, "{value} instead of {wanted}");
     }
     // The damper of the second drive brakes; its effort is the input less that.
     let efforts = (&arm as &dyn DynCrane).drive_efforts_at(0.0, &q, &v);

@@ -232,9 +232,9 @@ fn times(crane: &LiveCrane, method: Method, duration: f64) -> (Vec<Option<f64>>,
     let settings = settings(crane, method, duration);
     let crane: &dyn DynCrane = crane;
     let start = Start::new(crane).expect("a start");
-    let found =
+    let recorded =
         record_checked(crane, &start, &settings, (true, 5.0), &mut |_| ControlFlow::Continue(())).expect("a run");
-    (found.table.times_of_events(crane.description()), found.cautions)
+    (recorded.table.times_of_events(crane.description()), recorded.cautions)
 }
 
 /// Lowered at 0.4 m/s on its spring, the load comes off as its hook passes −0.5 m: with z = −m g/k − v t + (v/ω) sin ωt before, whose root is
@@ -296,8 +296,8 @@ fn efforts_before_an_event_count() {
     let mut known = 0;
     for method in Method::ALL {
         let settings = settings(&lift, method, 1.0);
-        let found = record(&lift, &start, &settings, &mut |_| ControlFlow::Continue(())).expect("a run");
-        for effort in &found.run.efforts {
+        let recorded = record(&lift, &start, &settings, &mut |_| ControlFlow::Continue(())).expect("a run");
+        for effort in &recorded.run.efforts {
             // Steps end beside the peak.
             assert!((effort.peak - expected).abs() < 1e-2 * expected, "{method:?}: {}, {expected}", effort.peak);
             known += 1;
@@ -417,18 +417,18 @@ fn steps_have_the_events_of_a_run() {
             );
             let sample = motion.sample();
             let found = [sample.q[0], sample.v[0], sample.event_work, sample.work];
-            for (found, expected) in found.iter().zip(&columns) {
-                let off = (found - expected[row]).abs();
+            for (value, expected) in found.iter().zip(&columns) {
+                let off = (value - expected[row]).abs();
                 assert!(
                     off < 1e-9 * (1.0 + expected[row].abs()),
-                    "{method:?}, {} s: {found}, {}",
+                    "{method:?}, {} s: {value}, {}",
                     values[0],
                     expected[row]
                 );
             }
             let times = sample.event_times.to_vec();
-            for (found, expected) in times.iter().zip(&values[values.len() - 2..]) {
-                assert!((found - expected).abs() < 1e-9, "{method:?}, {} s: {found}, {expected}", values[0]);
+            for (value, expected) in times.iter().zip(&values[values.len() - 2..]) {
+                assert!((value - expected).abs() < 1e-9, "{method:?}, {} s: {value}, {expected}", values[0]);
             }
             if row % 70 == 69 {
                 let memory = motion.memory();

@@ -29,8 +29,8 @@ fn the_tip_deflects_as_in_beam_theory_with_order_two() {
         };
         let [of_4, of_8, of_16] = ["4", "8", "16"].map(deviation);
         // As with springs of 1e12 N/m, whose compliance is 1e-7 of the deflection.
-        for (found, known) in [(of_4, -2.16e-2), (of_8, -5.9e-3), (of_16, -1.52e-3)] {
-            assert!((found / known - 1.0).abs() < 6e-3, "{found} instead of {known}");
+        for (value, known) in [(of_4, -2.16e-2), (of_8, -5.9e-3), (of_16, -1.52e-3)] {
+            assert!((value / known - 1.0).abs() < 6e-3, "{value} instead of {known}");
         }
         assert!(of_8 / of_16 > 2_f64.powf(1.9), "{of_4} {of_8} {of_16}");
     }
@@ -90,7 +90,7 @@ fn rigid_beams_are_a_prismatic_joint() {
     };
     let with = |numbers: &[f64]| {
         let mut all = vec![0.0; pads.size()];
-        own.iter().zip(numbers).for_each(|(&place, number)| all[place] = *number);
+        own.iter().zip(numbers).for_each(|(&index, number)| all[index] = *number);
         all
     };
     for pose in 0..4 {
@@ -98,9 +98,9 @@ fn rigid_beams_are_a_prismatic_joint() {
         let (q, v): (Vec<f64>, Vec<f64>) = (0..plain.size()).map(|j| (number(j), number(j + 20))).unzip();
         let one = plain.accelerations_at(0.0, &q, &v);
         let other = pads.accelerations_at(0.0, &with(&q), &with(&v));
-        for (j, &place) in own.iter().enumerate() {
+        for (j, &index) in own.iter().enumerate() {
             // Five equations take five digits less than rounding: condition of the pads' levers.
-            assert!((one[j] - other[place]).abs() < 1e-10 * one.amax(), "{pose}, {j}: {} {}", one[j], other[place]);
+            assert!((one[j] - other[index]).abs() < 1e-10 * one.amax(), "{pose}, {j}: {} {}", one[j], other[index]);
         }
         // What the pads hold rests.
         let held = (0..pads.size()).filter(|j| !own.contains(j));
@@ -173,9 +173,9 @@ fn pads_carry_what_levers_say() {
     let (a, b) = (LENGTH - OVERLAP, OVERLAP);
     let [front, rear] = [LOAD * (a + b) / b, LOAD * a / b];
     let found = crane.loop_forces_at_rest(&q);
-    for (found, expected) in found.iter().zip([0.0, -front, 0.0, -rear]) {
+    for (value, expected) in found.iter().zip([0.0, -front, 0.0, -rear]) {
         // Slopes of up to 2e-3 turn the forces.
-        assert!((found - expected).abs() < 1e-5 * front, "{found} instead of {expected}");
+        assert!((value - expected).abs() < 1e-5 * front, "{value} instead of {expected}");
     }
     assert_section_forces(crane, &q);
 }
@@ -214,8 +214,8 @@ fn sections_at_rest_do_not_ask_where_motions_are() {
             .flat_map(|wrench| wrench.force.iter().chain(&wrench.moment).copied().collect::<Vec<_>>())
             .collect()
     };
-    for (expected, found) in numbers(&expected).into_iter().zip(numbers(&found)) {
+    for (expected, value) in numbers(&expected).into_iter().zip(numbers(&found)) {
         // Statics ends at 1e-10 of moments of 100 N times 7 m.
-        assert!((expected - found).abs() < 1e-6 * LOAD, "{found} instead of {expected}");
+        assert!((expected - value).abs() < 1e-6 * LOAD, "{value} instead of {expected}");
     }
 }

@@ -54,16 +54,16 @@ fn the_far_feet_reach_nothing_at_the_load_of_the_moment_equilibrium() {
         let crane: &mut dyn DynCrane = &mut truck;
         for (share, stands) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
             crane.set_parameter(0, share * TIPPING).unwrap();
-            let found = crane.equilibrium(&Statics::default());
+            let equilibrium = crane.equilibrium(&Statics::default());
             if stands {
-                assert!(found.is_stable(), "{kinematics}: {found}");
-                let far = crane.support_reactions_at(&found.q, &[0.0; 6])[2].z;
+                assert!(equilibrium.is_stable(), "{kinematics}: {equilibrium}");
+                let far = crane.support_reactions_at(&equilibrium.q, &[0.0; 6])[2].z;
                 // Each far foot carries half of the remaining moment.
                 let expected = (1.0 - share) * TIPPING * 9.81 * (RADIUS - TRACK) / (2.0 * TRACK) / 2.0;
                 assert!((far / expected - 1.0).abs() < 0.1 && far > 0.0, "{kinematics}: {far} N for {expected}");
             } else {
                 let feet = vec!["near_rear".into(), "near_front".into()];
-                assert_eq!(found.status, Status::TipsOver { feet }, "{kinematics}: {found}");
+                assert_eq!(equilibrium.status, Status::TipsOver { feet }, "{kinematics}: {equilibrium}");
             }
         }
     }
@@ -238,9 +238,9 @@ fn a_truck_that_tips_names_the_moments_and_the_links() {
     let crane: &mut dyn DynCrane = &mut truck;
     let load = 2.0 * TIPPING;
     crane.set_parameter(0, load).unwrap();
-    let found = crane.equilibrium(&Statics::default());
-    let Diagnosis::Overturned { feet, line, most: [Some(worst), Some(best)] } = Diagnosis::new(crane, &found) else {
-        panic!("{found}");
+    let equilibrium = crane.equilibrium(&Statics::default());
+    let Diagnosis::Overturned { feet, line, most: [Some(worst), Some(best)] } = Diagnosis::new(crane, &equilibrium) else {
+        panic!("{equilibrium}");
     };
     assert_eq!(feet.each_ref().map(crane_model::Text::as_str), ["near_rear", "near_front"]);
     // Rounding alone: the guess is level.
@@ -249,7 +249,7 @@ fn a_truck_that_tips_names_the_moments_and_the_links() {
     assert!(off(line.stabilising, held) < 1e-12 && off(line.overturning, 2.0 * held) < 1e-12, "{line:?}");
     assert_eq!([worst.link.as_str(), best.link.as_str()], ["load", "truck"]);
     assert!(off(worst.weight, load * 9.81) < 1e-12 && off(-worst.moment / worst.weight, RADIUS - TRACK) < 1e-12);
-    let reason = Reason::no_equilibrium(crane, &found);
+    let reason = Reason::no_equilibrium(crane, &equilibrium);
     let (message, advice) =
         (Failed { crane: "truck".into(), reason: Box::new(reason.clone()) }.to_string(), reason.advice());
     assert!(message.contains("load overturns it most") && message.contains("6.00 m outside the line"), "{message}");
@@ -257,8 +257,8 @@ fn a_truck_that_tips_names_the_moments_and_the_links() {
     // Seven times the tipping load, divided by 9.81, is less than it; twenty times is not; twice is an ordinary overload.
     for (times, suspected) in [(2.0, false), (7.0, true), (20.0, false)] {
         crane.set_parameter(0, times * TIPPING).unwrap();
-        let found = crane.equilibrium(&Statics::default());
-        let advice = Diagnosis::new(crane, &found).advice();
+        let equilibrium = crane.equilibrium(&Statics::default());
+        let advice = Diagnosis::new(crane, &equilibrium).advice();
         assert!(advice.contains("wider stance"), "{advice}");
         assert_eq!(advice.contains("the mass of `load` is a weight in N"), suspected, "{times}: {advice}");
     }
@@ -279,14 +279,14 @@ fn gravity_upwards_and_feet_in_one_place_are_named() {
     };
     let floating = crane(&text(9.81, 1.0));
     let floating: &dyn DynCrane = &floating;
-    let found = floating.equilibrium(&Statics::default());
-    assert_eq!(found.status, Status::Floats, "{found}");
-    let Diagnosis::Floats { upwards } = Diagnosis::new(floating, &found) else { panic!("{found}") };
+    let equilibrium = floating.equilibrium(&Statics::default());
+    assert_eq!(equilibrium.status, Status::Floats, "{equilibrium}");
+    let Diagnosis::Floats { upwards } = Diagnosis::new(floating, &equilibrium) else { panic!("{equilibrium}") };
     assert!((upwards - 9810.0).abs() < 1e-9, "{upwards}");
     let stacked = crane(&text(-9.81, 0.0));
     let stacked: &dyn DynCrane = &stacked;
-    let found = stacked.equilibrium(&Statics::default());
-    assert_eq!(Diagnosis::new(stacked, &found), Diagnosis::NoPolygon { one_place: true }, "{found}");
+    let equilibrium = stacked.equilibrium(&Statics::default());
+    assert_eq!(Diagnosis::new(stacked, &equilibrium), Diagnosis::NoPolygon { one_place: true }, "{equilibrium}");
 }
 
 /// What statics ends with if a number of one foot has a wrong place or exponent.
@@ -297,9 +297,9 @@ fn a_foot_in_the_air_and_a_spring_beyond_reason_are_named() {
         assert!(loader.contains(from), "{from}");
         let changed = crane(&loader.replacen(from, to, 1));
         let crane: &dyn DynCrane = &changed;
-        let found = crane.equilibrium(&Statics::default());
-        assert!(!found.is_stable(), "{to}: {found}");
-        Diagnosis::new(crane, &found)
+        let equilibrium = crane.equilibrium(&Statics::default());
+        assert!(!equilibrium.is_stable(), "{to}: {equilibrium}");
+        Diagnosis::new(crane, &equilibrium)
     };
     let found = diagnosis(
         "at: [0, 2.4, 0], stiffness: [3 kN/mm, 3 kN/mm, 8 kN/mm]",
@@ -330,11 +330,11 @@ fn an_equilibrium_that_rounding_hides_is_none() {
             format!("name: far\ncylinders:\n  - {{name: telescope_cylinder, foot: {{at: [0, -{far:e}, 0]}}}}\n");
         let changed = LiveCrane::from_spec(&open.changed(&changes)).expect("valid");
         let crane: &dyn DynCrane = &changed;
-        let found = crane.equilibrium(&Statics::default());
-        assert_eq!((found.status == Status::NotConverged, found.is_stable()), (hidden, !hidden), "{far:e}: {found}");
-        assert!(hidden || found.residual() < 1e-8);
+        let equilibrium = crane.equilibrium(&Statics::default());
+        assert_eq!((equilibrium.status == Status::NotConverged, equilibrium.is_stable()), (hidden, !hidden), "{far:e}: {equilibrium}");
+        assert!(hidden || equilibrium.residual() < 1e-8);
         if hidden {
-            let why = Diagnosis::new(crane, &found);
+            let why = Diagnosis::new(crane, &equilibrium);
             assert!(matches!(why, Diagnosis::Rounding { residual } if residual > 1e-6), "{why:?}");
             assert!(why.to_string().contains("rounding"), "{why}");
         }
@@ -348,9 +348,9 @@ fn all_meshes_of_a_crane_that_a_rope_pulls_rest_alike() {
     for sections in [3, 14, 16, 18] {
         let loader = crane(&text.replace("SECTIONS", &sections.to_string()));
         let loader: &dyn DynCrane = &loader;
-        let found = loader.equilibrium(&Statics::default());
-        assert!(found.is_stable(), "{sections}: {found}");
-        let reactions = loader.support_reactions_at(&found.q, &vec![0.0; found.q.len()]);
+        let equilibrium = loader.equilibrium(&Statics::default());
+        assert!(equilibrium.is_stable(), "{sections}: {equilibrium}");
+        let reactions = loader.support_reactions_at(&equilibrium.q, &vec![0.0; equilibrium.q.len()]);
         // Three sections are 0.5 N from the limit.
         assert!((reactions[3].z - 9005.0).abs() < 2.0, "{sections}: {reactions:?}");
     }

@@ -110,8 +110,8 @@ fn trapped_oil_is_a_spring() {
     let omega = (stiffness(z) / MASS).sqrt();
     // The modes: exact.
     let motions = (&crane as &dyn DynCrane).small_motions_at(&rest.q);
-    let found = (motions.stiffness[(0, 0)] / motions.mass[(0, 0)]).sqrt();
-    assert!((found / omega - 1.0).abs() < 1e-12, "{found} against {omega}");
+    let value = (motions.stiffness[(0, 0)] / motions.mass[(0, 0)]).sqrt();
+    assert!((value / omega - 1.0).abs() < 1e-12, "{value} against {omega}");
     // A small motion: v/ω after a quarter of a period. The volumes change by 1e-4 meanwhile.
     let v = 1e-3;
     let quarter = PI / (2.0 * omega);
@@ -286,9 +286,9 @@ fn every_method_follows_the_laws_written_a_second_time() {
         });
         run.expect("a run");
         let sizes = [0.3, 0.1, PUMP, PUMP, 1.0, PUMP];
-        for ((found, expected), size) in found.iter().zip(expected).zip(sizes) {
-            let off = (found - expected).abs() / size;
-            assert!(off < close, "{method:?}: {found} against {expected}, {off:.1e}");
+        for ((value, expected), size) in found.iter().zip(expected).zip(sizes) {
+            let off = (value - expected).abs() / size;
+            assert!(off < close, "{method:?}: {value} against {expected}, {off:.1e}");
         }
     }
 }
@@ -340,6 +340,6 @@ fn oil_limits_the_step_of_explicit_methods() {
     let exact = column(&record(&crane, &settings(Method::Bdf, 1e-8, 0.5)), "slide_z");
     let short = Settings { step: 0.9 * limit.step, ..settings(Method::Rk4, 1e-8, 0.5) };
     let found = column(&record(&crane, &short), "slide_z");
-    let off = exact.iter().zip(&found).map(|(exact, found)| (exact - found).abs()).fold(0.0, f64::max);
+    let off = exact.iter().zip(&found).map(|(exact, value)| (exact - value).abs()).fold(0.0, f64::max);
     assert!(off < 1e-5, "{off:.1e} m");
 }

@@ -51,9 +51,9 @@ fn numbers(crane: &LiveCrane, t: f64) -> Vec<f64> {
 
 fn assert_close(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len());
-    for (found, expected) in found.iter().zip(expected) {
+    for (value, expected) in found.iter().zip(expected) {
         // Sums are in another order; the equilibrium is accurate to 1e-10 of the forces.
-        assert!((found - expected).abs() <= 1e-11 * expected.abs().max(1.0), "{found} instead of {expected}");
+        assert!((value - expected).abs() <= 1e-11 * expected.abs().max(1.0), "{value} instead of {expected}");
     }
 }
 

@@ -94,15 +94,15 @@ fn a_damped_stop_keeps_what_hunt_and_crossley_say() {
     for damping in [0.01, 0.1, 0.5] {
         let crane = slide(&format!("stops: {{slide_x: {{max: 0.1, stiffness: 8e4, damping: {damping}}}}}\n"));
         let samples = run_states(&crane, Method::Bdf, 1e-9, 0.3, 1.0);
-        let found = -samples[samples.len() - 1][2];
+        let value = -samples[samples.len() - 1][2];
         let law = |e: f64| damping * (1.0 + e) - ((1.0 + damping) / (1.0 - damping * e)).ln();
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             (low, high) = if law(middle) > 0.0 { (middle, high) } else { (low, middle) };
         }
-        assert!((found - low).abs() < 1e-5, "a = {damping}: {found} for {low}");
-        assert!((1.0 - found - 2.0 / 3.0 * damping).abs() < damping * damping, "a = {damping}: {found}");
+        assert!((value - low).abs() < 1e-5, "a = {damping}: {value} for {low}");
+        assert!((1.0 - value - 2.0 / 3.0 * damping).abs() < damping * damping, "a = {damping}: {value}");
     }
 }
 
@@ -169,15 +169,15 @@ fn statics_rest_on_a_stop_and_know_no_friction() {
                 friction: {arm_theta: {coulomb: 1000, viscous: 3}}\n";
     let crane = LiveCrane::from_spec(&SourceFile::new("arm.yaml", text)).unwrap();
     let crane: &dyn DynCrane = &crane;
-    let found = crane.equilibrium(&crane_model::statics::Settings::default());
-    assert!(found.is_stable(), "{found}");
+    let equilibrium = crane.equilibrium(&crane_model::statics::Settings::default());
+    assert!(equilibrium.is_stable(), "{equilibrium}");
     // About y a positive angle lowers the arm: the stop holds m g l cos θ.
-    let (stop, theta) = (20.0_f64.to_radians(), found.q[0]);
+    let (stop, theta) = (20.0_f64.to_radians(), equilibrium.q[0]);
     let expected = stop + 98.1 * theta.cos() / 1e6;
     assert!((theta - expected).abs() < 1e-12, "{theta} for {expected}");
-    assert!((crane.stop_efforts_at(&found.q, &[0.0])[0] + 98.1 * theta.cos()).abs() < 1e-6);
+    assert!((crane.stop_efforts_at(&equilibrium.q, &[0.0])[0] + 98.1 * theta.cos()).abs() < 1e-6);
     assert_eq!(crane.friction_efforts_at(&[0.0]), [0.0]);
-    let small = crane.small_motions_at(&found.q);
+    let small = crane.small_motions_at(&equilibrium.q);
     // The stiffness due to gravity is m g l sin θ.
     assert!((small.stiffness[(0, 0)] - (1e6 + 98.1 * theta.sin())).abs() < 1e-6);
     assert!((small.damping[(0, 0)] - (3.0 + 1e6 * 0.1 * (theta - stop))).abs() < 1e-9);

@@ -98,19 +98,19 @@ fn statics_name_a_drive_that_cannot_hold() {
     for limit in [30.0, 60.0, 90.0] {
         let arm = arm(limit);
         let arm: &dyn DynCrane = &arm;
-        let found = arm.equilibrium(&statics::Settings::default());
-        assert!(found.is_stable(), "{limit}: {found}");
+        let equilibrium = arm.equilibrium(&statics::Settings::default());
+        assert!(equilibrium.is_stable(), "{limit}: {equilibrium}");
         let expected = (limit / 98.1_f64).acos();
-        assert!((found.q[0] - expected).abs() < 1e-10, "{limit}: {} for {expected}", found.q[0]);
-        let cautions = cautions::of_pose(arm, &found.q, 20.0);
+        assert!((equilibrium.q[0] - expected).abs() < 1e-10, "{limit}: {} for {expected}", equilibrium.q[0]);
+        let cautions = cautions::of_pose(arm, &equilibrium.q, 20.0);
         assert!(cautions.len() == 1 && cautions[0].contains("is at its limit"), "{cautions:?}");
     }
     // Below 95 % of its limit the drive behaves like one without a limit.
     let (arm, weight) = (arm(110.0), 98.1);
     let arm: &dyn DynCrane = &arm;
-    let found = arm.equilibrium(&statics::Settings::default());
-    assert!((found.q[0] - weight * found.q[0].cos() / 1e5).abs() < 1e-14, "{}", found.q[0]);
-    assert_eq!(cautions::of_pose(arm, &found.q, 20.0), [] as [String; 0]);
+    let equilibrium = arm.equilibrium(&statics::Settings::default());
+    assert!((equilibrium.q[0] - weight * equilibrium.q[0].cos() / 1e5).abs() < 1e-14, "{}", equilibrium.q[0]);
+    assert_eq!(cautions::of_pose(arm, &equilibrium.q, 20.0), [] as [String; 0]);
 }
 
 /// Poses in which a drive holds a position other than its start; its spring, measured from the start, would be at its limit.
@@ -122,12 +122,12 @@ fn drives_hold_other_positions_within_their_limit() {
          drives: [{{coordinate: arm_theta, stiffness: {stiffness}, max_effort: {limit}, motion: {{hold: 0}}}}]\n"
     ));
     for position in [-0.9, 0.6, 1.2] {
-        let found = statics::Problem::new(&arm).holding(&[position]).from(&[position]).solve();
-        assert!(found.is_stable(), "{position}: {found}");
-        let expected = position + 98.1 * found.q[0].cos() / stiffness;
-        assert!((found.q[0] - expected).abs() < 1e-14, "{position}: {} for {expected}", found.q[0]);
+        let equilibrium = statics::Problem::new(&arm).holding(&[position]).from(&[position]).solve();
+        assert!(equilibrium.is_stable(), "{position}: {equilibrium}");
+        let expected = position + 98.1 * equilibrium.q[0].cos() / stiffness;
+        assert!((equilibrium.q[0] - expected).abs() < 1e-14, "{position}: {} for {expected}", equilibrium.q[0]);
         // Newton's method with the exact tangent converges quadratically from 1e-3 rad away.
-        assert!(found.history.len() <= 5, "{found}");
+        assert!(equilibrium.history.len() <= 5, "{equilibrium}");
     }
 }
 

@@ -411,13 +411,13 @@ fn a_step_differs_from_its_model_by_its_square() {
     for (crane, coordinate, push) in [(four_bar(), 0, 60.0), (boom(), 1, 2000.0)] {
         let q = at_rest(&crane);
         let v = vec![0.0; q.len()];
-        let place = crane.description().inputs.iter().position(|input| input.name == "torque").unwrap();
-        let model = linear_model(&crane, &about(&q, &v, Forces::Holding), &[Input::Spec(place)], &[]).unwrap();
+        let index = crane.description().inputs.iter().position(|input| input.name == "torque").unwrap();
+        let model = linear_model(&crane, &about(&q, &v, Forces::Holding), &[Input::Spec(index)], &[]).unwrap();
         let time = 0.25;
         let expected = held(&model, time);
         let rest = |push: f64| {
             let mut changed = crane.clone();
-            DynCrane::set_input(&mut changed, place, Some(push));
+            DynCrane::set_input(&mut changed, index, Some(push));
             let end = run(&changed, &q, time);
             end[coordinate] - q[coordinate] - push * expected[coordinate]
         };
@@ -487,8 +487,8 @@ fn drives_act_with_their_springs() {
     let expected = [[1.0, 2e5, 4e3, 1.0], [0.0, 1.0, 0.0, 0.0]];
     for (row, expected) in expected.iter().enumerate() {
         for (index, expected) in expected.iter().enumerate() {
-            let found = model.d[(row, index)];
-            assert!((found - expected).abs() < 1e-6 * expected.abs().max(1.0), "{row} {index}: {found} for {expected}");
+            let value = model.d[(row, index)];
+            assert!((value - expected).abs() < 1e-6 * expected.abs().max(1.0), "{row} {index}: {value} for {expected}");
         }
     }
     // The spring answers the boom.

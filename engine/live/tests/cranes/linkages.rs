@@ -85,9 +85,9 @@ fn rods_pin(to_head: Vector3<f64>, axis: Vector3<f64>) -> Vector3<f64> {
 }
 
 fn rest(crane: &dyn DynCrane) -> Vec<f64> {
-    let found = crane.equilibrium(&statics::Settings::default());
-    assert!(found.is_stable(), "{found}");
-    found.q
+    let equilibrium = crane.equilibrium(&statics::Settings::default());
+    assert!(equilibrium.is_stable(), "{equilibrium}");
+    equilibrium.q
 }
 
 /// The world position of a point of a body.

@@ -97,19 +97,19 @@ fn chart_between(
     factor: f64,
 ) -> Vec<Rating> {
     let axes = Axes(vec![Axis { varied: Varied::Drive(drive), values: positions.to_vec() }]);
-    let asked = Envelope { axes, load: 0, loads, limits, factor };
+    let envelope = Envelope { axes, load: 0, loads, limits, factor };
     let found = std::sync::Mutex::new(Vec::new());
     let done = |_: usize, ratings: &[Rating]| found.lock().unwrap().extend(ratings.to_vec());
-    let pieces: Vec<usize> = (0..asked.pieces()).collect();
-    asked.run(crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
+    let pieces: Vec<usize> = (0..envelope.pieces()).collect();
+    envelope.run(crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
     found.into_inner().unwrap()
 }
 
 /// The accuracy of charts.
 const ACCURACY: f64 = 2e-6;
 
-fn assert_close(what: &str, found: f64, expected: f64, tolerance: f64) {
-    assert!((found / expected - 1.0).abs() < tolerance, "{what}: {found} instead of {expected}");
+fn assert_close(what: &str, value: f64, expected: f64, tolerance: f64) {
+    assert!((value / expected - 1.0).abs() < tolerance, "{what}: {value} instead of {expected}");
 }
 
 /// The force of a cylinder at its pressure has the moment of the load: `(p A − p₀ A′) · lever = m g R cos θ`.
@@ -196,10 +196,10 @@ fn at_the_loads_of_a_chart_statics_finds_the_pressure() {
             let there = &mut boom(*angle, max_pressure, pump);
             let there: &mut dyn DynCrane = there;
             there.set_parameter(0, rating.load.unwrap()).unwrap();
-            let found = there.equilibrium(&statics::Settings::default());
-            assert!(found.is_stable(), "{found}");
-            let efforts = there.drive_efforts_at_rest(&found.q);
-            let state = cylinders_at(there, &found.q, &vec![0.0; found.q.len()], &efforts)[0];
+            let equilibrium = there.equilibrium(&statics::Settings::default());
+            assert!(equilibrium.is_stable(), "{equilibrium}");
+            let efforts = there.drive_efforts_at_rest(&equilibrium.q);
+            let state = cylinders_at(there, &equilibrium.q, &vec![0.0; equilibrium.q.len()], &efforts)[0];
             assert_close(&format!("{greatest:e} Pa at {angle}"), state.pressures[0], greatest, ACCURACY);
             let expected = if pump < max_pressure {
                 Limit::Pump { cylinder: 0, rod: false }
@@ -397,16 +397,16 @@ drives:
     let tipping = Limits { tipping: Some(0.0), ..Limits::none(crane.description()) };
     let angle = 50.0f64.to_radians();
     for (limits, critical) in [(lift, Critical::FirstFoot), (tipping, Critical::Tipping)] {
-        let found = critical_load(&mut crane, 0, critical).unwrap();
+        let critical_load = critical_load(&mut crane, 0, critical).unwrap();
         let rating = &chart(&crane, 0, &[angle], limits, 1.0)[0];
-        assert_close("the critical load", rating.load.unwrap(), found.load, ACCURACY);
+        assert_close("the critical load", rating.load.unwrap(), critical_load.load, ACCURACY);
         let expected = match critical {
             // On equal springs: (4001 + m)/4 − m x · 1.5/(4 · 1.5²) − m y · 1/(4 · 1²) = 0.
             Critical::FirstFoot => 4001.0 / (4.0 * angle.cos() / 1.5 + 4.0 * angle.sin() - 1.0),
             Critical::Tipping => 4001.0 / (4.0 * angle.sin() - 1.0),
         };
         // The feet yield by micrometres.
-        assert_close("moments", found.load, expected, 1e-5);
+        assert_close("moments", critical_load.load, expected, 1e-5);
     }
 }
 
@@ -434,10 +434,10 @@ fn the_order_of_poses_changes_no_load() {
             let varied = Varied::named(varied, description).unwrap();
             let axes = Axes(vec![Axis { varied, values: values.to_vec() }]);
             let limits = Limits::usual(description);
-            let asked = Envelope { axes, load, loads: range_of_loads(&live, load, None), limits, factor: 1.0 };
+            let envelope = Envelope { axes, load, loads: range_of_loads(&live, load, None), limits, factor: 1.0 };
             let found = std::sync::Mutex::new(Vec::new());
             let done = |_: usize, ratings: &[Rating]| found.lock().unwrap().extend(ratings.to_vec());
-            asked.run(&live, &[0], &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
+            envelope.run(&live, &[0], &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
             found.into_inner().unwrap().into_iter().map(|rating| rating.load).collect()
         };
         let [first, last] = values;
@@ -481,11 +481,11 @@ fn a_chart_is_empty_only_where_statics_finds_no_rest() {
     ]);
     let load = description.parameters.iter().position(|info| info.name == "payload").unwrap();
     let limits = Limits { tipping: Some(0.0), ..Limits::none(description) };
-    let asked = Envelope { axes, load, loads: range_of_loads(&crane, load, None), limits, factor: 1.0 };
+    let envelope = Envelope { axes, load, loads: range_of_loads(&crane, load, None), limits, factor: 1.0 };
     let found = std::sync::Mutex::new(Vec::new());
     let done = |piece: usize, ratings: &[Rating]| found.lock().unwrap().push((piece, ratings.to_vec()));
-    let pieces: Vec<usize> = (0..asked.pieces()).collect();
-    asked.run(&crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
+    let pieces: Vec<usize> = (0..envelope.pieces()).collect();
+    envelope.run(&crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
     let mut found = found.into_inner().unwrap();
     found.sort_by_key(|(piece, _)| *piece);
     let ratings: Vec<Rating> = found.into_iter().flat_map(|(_, ratings)| ratings).collect();
@@ -515,8 +515,8 @@ fn what_stands_on_its_head_is_followed_from_the_beginning() {
     let crane = LiveCrane::from_spec(&SourceFile::new("turned.yaml", text)).expect("a crane");
     let search = statics::RestSearch { crane: &crane, positions: &[PI] };
     assert!(!search.find_from_guess().is_stable());
-    let found = search.find(None);
-    assert!(found.is_stable() && ((found.q[0] + found.q[1]).sin() + 1.0).abs() < 1e-12, "{:?}", found.q);
+    let equilibrium = search.find(None);
+    assert!(equilibrium.is_stable() && ((equilibrium.q[0] + equilibrium.q[1]).sin() + 1.0).abs() < 1e-12, "{:?}", equilibrium.q);
 }
 
 /// A load on two slanting springs of height h, which snaps through where `P = 2 k (ℓ₀ − ℓ) z/ℓ + c (h − z)` is greatest: it rests below with any load beyond, but its path

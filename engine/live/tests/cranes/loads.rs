@@ -136,8 +136,8 @@ fn the_work_of_a_load_is_kinetic_energy() {
     });
     run.expect("it runs");
     // A quadratic motion, which formulas of order 2 reproduce except at the start, at a tolerance of 2e-5.
-    for (found, expected) in last.into_iter().zip([3.0, 3.0, 18.0]) {
-        assert!((found - expected).abs() < 1e-3, "{found} for {expected}");
+    for (value, expected) in last.into_iter().zip([3.0, 3.0, 18.0]) {
+        assert!((value - expected).abs() < 1e-3, "{value} for {expected}");
     }
 }
 

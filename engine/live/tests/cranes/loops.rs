@@ -762,12 +762,12 @@ fn loops_next_to_each_other_move_as_one_system_of_all_equations() {
         let mut forces = vec![0.0; n];
         row.forces(0.0, &q, &v, &mut forces);
         right.rows_mut(0, n).copy_from(&(row.bias_at(&q, &v) + DVector::from_vec(forces)));
-        for (place, &equation) in independent.iter().enumerate() {
+        for (index, &equation) in independent.iter().enumerate() {
             for j in 0..n {
                 let entry = jacobian[equation * n + j];
-                (whole[(n + place, j)], whole[(j, n + place)]) = (entry, entry);
+                (whole[(n + index, j)], whole[(j, n + index)]) = (entry, entry);
             }
-            right[n + place] = -states[equation].z;
+            right[n + index] = -states[equation].z;
         }
         let expected = whole.lu().solve(&right).expect("a regular matrix");
         let found = row.accelerations_at(0.0, &q, &v);

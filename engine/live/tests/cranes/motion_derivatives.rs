@@ -49,8 +49,8 @@ fn a_pendulum_has_the_derivatives_of_its_textbook() {
     let (inertia, moment, damping, q) = (0.05 + 2.0 * 0.25, 2.0 * 9.81 * 0.5, 0.3, 0.4_f64);
     let mut out = [f64::NAN; 3];
     live.forward_dynamics_derivatives(0.0, &[q], &[1.5], &mut out);
-    for (found, expected) in out.into_iter().zip([-moment * q.sin() / inertia, -damping / inertia, 1.0 / inertia]) {
+    for (value, expected) in out.into_iter().zip([-moment * q.sin() / inertia, -damping / inertia, 1.0 / inertia]) {
         // Rounding of numbers of order 10.
-        assert!((found - expected).abs() < 1e-14, "{out:?} for {expected}");
+        assert!((value - expected).abs() < 1e-14, "{out:?} for {expected}");
     }
 }

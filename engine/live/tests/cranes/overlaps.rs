@@ -95,11 +95,11 @@ fn a_chart_ends_where_the_overlap_does() {
     let crane = crane("2", "{hold: 1}");
     let limits = Limits { of_parts: PartLimit::DEFAULT.to_vec(), ..Limits::none(crane.description()) };
     let axes = Axes(vec![Axis { varied: Varied::Drive(1), values: vec![-0.4, 2.0, 3.45, 3.55] }]);
-    let asked = Envelope { axes, load: 2, loads: [1.0, 500.0], limits, factor: 1.0 };
+    let envelope = Envelope { axes, load: 2, loads: [1.0, 500.0], limits, factor: 1.0 };
     let found: Mutex<Vec<Rating>> = Mutex::new(Vec::new());
     let done = |_: usize, ratings: &[Rating]| found.lock().unwrap().extend(ratings.to_vec());
-    let pieces: Vec<usize> = (0..asked.pieces()).collect();
-    asked.run(&crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
+    let pieces: Vec<usize> = (0..envelope.pieces()).collect();
+    envelope.run(&crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false }).unwrap();
     let ratings = found.into_inner().unwrap();
     let is_of_stage = |limit: Limit| limit.kind() == "overlap" && limit.location(&crane) == "stage";
     assert_eq!(ratings.iter().map(|rating| rating.load.is_some()).collect::<Vec<_>>(), [false, true, true, false]);

@@ -45,8 +45,8 @@ fn motions_stand_at_rest() {
         [("column_psi_drive_torque", 0.0), ("trolley_x_drive_force", 0.0), ("hoist_force", weight)]
     {
         let Extremes { minimum, maximum, .. } = Extremes::of_column(&along.table, column);
-        for found in [minimum, maximum] {
-            assert!((found - expected).abs() < 1e-6 * weight, "{column}: {minimum} to {maximum}");
+        for value in [minimum, maximum] {
+            assert!((value - expected).abs() < 1e-6 * weight, "{column}: {minimum} to {maximum}");
         }
     }
 }

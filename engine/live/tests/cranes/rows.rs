@@ -93,8 +93,8 @@ fn derivatives_of_accelerations_are_those_of_one_crane() {
     Evaluation::<f64x8>::new(&crane, FunctionId::ForwardDynamicsDerivatives).run(&rows, 0..COUNT, &mut out);
     let mut alone = vec![f64::NAN; 3 * n * n];
     for (row, found) in out.chunks(3 * n * n).enumerate() {
-        let own = row * n..(row + 1) * n;
-        crane.forward_dynamics_derivatives(0.0, &q[own.clone()], &v[own], &mut alone);
+        let range = row * n..(row + 1) * n;
+        crane.forward_dynamics_derivatives(0.0, &q[range.clone()], &v[range], &mut alone);
         let largest = alone.iter().fold(0.0_f64, |largest, number| largest.max(number.abs()));
         for (k, (number, expected)) in found.iter().zip(&alone).enumerate() {
             assert!((number - expected).abs() <= 1e-12 * largest, "row {row}, {k}: {number}, {expected}");

@@ -548,12 +548,12 @@ fn an_event_on_a_condition_moves_with_what_it_depends_on() {
         };
         let step = 1e-5;
         let ends = [at(-step), at(step)];
-        for (place, (asked, _)) in asked.iter().enumerate() {
-            let expected = (ends[1][place] - ends[0][place]) / (2.0 * step * value);
+        for (index, (asked, _)) in asked.iter().enumerate() {
+            let expected = (ends[1][index] - ends[0][index]) / (2.0 * step * value);
             // Differences of closed forms are exact to 1e-10 of numbers over 1e-5; the run's tolerance is 1e-10 m in each of a thousand steps.
             let size = expected.abs().max(1e-2 / value.abs());
-            for own in [found[number].last().unwrap()[*asked], backward[place][number]] {
-                assert!((own - expected).abs() < 1e-6 * size, "{place} by {number}: {own:e}, not {expected:e}");
+            for own in [found[number].last().unwrap()[*asked], backward[index][number]] {
+                assert!((own - expected).abs() < 1e-6 * size, "{index} by {number}: {own:e}, not {expected:e}");
             }
         }
     }

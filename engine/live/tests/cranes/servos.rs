@@ -167,9 +167,9 @@ fn the_end_of_a_run_is_looked_at() {
     let start = Start::new(crane).expect("a start");
     let at_start = crane.equilibrium(&crane_model::statics::Settings::default());
     assert_eq!(unstable_servos(crane, 0.0, &at_start.q).expect("modes"), []);
-    let found =
+    let recorded =
         record_checked(crane, &start, &settings, (true, 5.0), &mut |_| ControlFlow::Continue(())).expect("a run");
-    let caution = found.cautions.join("; ");
+    let caution = recorded.cautions.join("; ");
     assert!(caution.contains("servo of ram is unstable"), "{caution}");
 }
 

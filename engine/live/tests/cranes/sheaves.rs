@@ -70,8 +70,8 @@ fn a_block_and_tackle_carries_as_many_tensions_as_it_has_falls() {
         assert!((q[0] - place).abs() < 1e-10, "{falls} falls: {} instead of {place}", q[0]);
         assert!((tackle.connector_tensions_at(0.0, &q, &[0.0])[0].force - tension).abs() < 1e-6 * tension);
         let small = tackle.small_motions_at(&q);
-        let [found, expected] = [small.stiffness[(0, 0)] / small.mass[(0, 0)], parts * parts * stiffness / MASS];
-        assert!((found / expected - 1.0).abs() < 1e-9, "{falls} falls: {found} instead of {expected}");
+        let [value, expected] = [small.stiffness[(0, 0)] / small.mass[(0, 0)], parts * parts * stiffness / MASS];
+        assert!((value / expected - 1.0).abs() < 1e-9, "{falls} falls: {value} instead of {expected}");
     }
 }
 
@@ -199,13 +199,13 @@ fn a_rope_over_three_links_does_virtual_work() {
         (moved(step) - moved(-step)) / (2.0 * step)
     });
     let rate: f64 = slopes.iter().zip(v).map(|(slope, v)| slope * v).sum();
-    let [found, found_rate] = arms.connector_lengths_at(&Q, &v)[0];
-    assert!((found - length(Q)).abs() < 1e-14 && (found_rate - rate).abs() < tolerance, "{found} {found_rate}");
+    let [value, found_rate] = arms.connector_lengths_at(&Q, &v)[0];
+    assert!((value - length(Q)).abs() < 1e-14 && (found_rate - rate).abs() < tolerance, "{value} {found_rate}");
     let force = 700.0 * (length(Q) - 1.5) * (1.0 + 0.3 * rate);
     let mut forces = [f64::NAN; 3];
     arms.connector_forces(0.0, &Q, &v, &mut forces);
-    for (found, slope) in forces.iter().zip(slopes) {
-        assert!((found + force * slope).abs() < tolerance * force.abs(), "{found} instead of {}", -force * slope);
+    for (value, slope) in forces.iter().zip(slopes) {
+        assert!((value + force * slope).abs() < tolerance * force.abs(), "{value} instead of {}", -force * slope);
     }
 }
 
@@ -233,10 +233,10 @@ fn beyond(arm: usize, forces: &[(usize, Vector3<f64>, Vector3<f64>)]) -> Wrench 
     sum
 }
 
-fn assert_same(found: Wrench, expected: Wrench, size: f64, what: &str) {
+fn assert_same(wrench: Wrench, expected: Wrench, size: f64, what: &str) {
     // Rounding errors of a few sums.
-    let off = (found.force - expected.force).amax().max((found.moment - expected.moment).amax());
-    assert!(off < 1e-12 * size, "{what}: {found:?} instead of {expected:?}");
+    let off = (wrench.force - expected.force).amax().max((wrench.moment - expected.moment).amax());
+    assert!(off < 1e-12 * size, "{what}: {wrench:?} instead of {expected:?}");
 }
 
 /// What a cut transmits at rest is the weight of the arms beyond it and the pulls of the rope on them, part by part.
@@ -258,13 +258,13 @@ fn cuts_transmit_the_pulls_of_all_sheaves_beyond_them() {
     let mut own = vec![Wrench::ZERO; cuts.len()];
     arms.connector_wrenches(&Q, &mut own);
     let transmitted = arms.internal_forces_at(0.0, &Q, &still, &still);
-    for ((cut, found), of_rope) in cuts.iter().zip(transmitted).zip(own) {
+    for ((cut, wrench), of_rope) in cuts.iter().zip(transmitted).zip(own) {
         let Cut::Joint { body } = *cut else {
             // What is between two arms is not carried by the ground.
             assert!(*cut != Cut::Ground || of_rope.force.amax().max(of_rope.moment.amax()) < 1e-13, "{of_rope:?}");
             continue;
         };
-        assert_same(found, beyond(body, &forces), tension, &format!("{cut:?}"));
+        assert_same(wrench, beyond(body, &forces), tension, &format!("{cut:?}"));
         assert_same(of_rope, beyond(body, &pulls(true)), 1.0, &format!("{cut:?}, at 1 N"));
     }
 }

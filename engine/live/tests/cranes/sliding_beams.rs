@@ -128,8 +128,8 @@ fn the_tip_deflects_as_in_beam_theory_with_order_two() {
     };
     let [of_4, of_8, of_16] = [4, 8, 16].map(|sections| deviation(sections, 2));
     // What a program that shares no code with this one computes of the curve in a plane.
-    for (found, known) in [(of_4, -2.16e-2), (of_8, -5.9e-3), (of_16, -1.52e-3)] {
-        assert!((found / known - 1.0).abs() < 6e-3, "{found} instead of {known}");
+    for (value, known) in [(of_4, -2.16e-2), (of_8, -5.9e-3), (of_16, -1.52e-3)] {
+        assert!((value / known - 1.0).abs() < 6e-3, "{value} instead of {known}");
     }
     // Order 1.9 and more; between 4 and 8 sections the next order still matters.
     assert!(of_8 / of_16 > 2_f64.powf(1.9) && of_4 / of_8 > 2_f64.powf(1.8), "{of_4} {of_8} {of_16}");
@@ -214,9 +214,9 @@ fn internal_forces_jump_at_the_pads_by_their_forces() {
     let [front, rear] = [LOAD * (a + b) / b, LOAD * a / b];
     // The names are front and rear, y, z, twist.
     let tensions: Vec<f64> = crane.connector_tensions_at(0.0, &q, &still).iter().map(|tension| tension.force).collect();
-    for (found, expected) in tensions.iter().zip([0.0, -front, 0.0, 0.0, -rear, 0.0]) {
+    for (value, expected) in tensions.iter().zip([0.0, -front, 0.0, 0.0, -rear, 0.0]) {
         // Slopes of up to 2e-3 turn the forces.
-        assert!((found - expected).abs() < 1e-5 * front, "{tensions:?}");
+        assert!((value - expected).abs() < 1e-5 * front, "{tensions:?}");
     }
     assert_section_forces(crane, &q);
 }
@@ -319,9 +319,9 @@ fn the_slope_of_the_tip_over_the_extension_does_not_jump() {
     // Both pads pass a border of sections at 0.3 m and at 0.8 m.
     let heights: Vec<f64> = (50..70)
         .map(|index| {
-            let found = statics::Problem::new(crane).at_time(time(STEP * f64::from(index))).from(&q).solve();
-            assert!(found.is_stable(), "{found}");
-            q.clone_from(&found.q);
+            let equilibrium = statics::Problem::new(crane).at_time(time(STEP * f64::from(index))).from(&q).solve();
+            assert!(equilibrium.is_stable(), "{equilibrium}");
+            q.clone_from(&equilibrium.q);
             crane.points_at(&q)[0].z
         })
         .collect();

@@ -21,12 +21,12 @@ type Sections<T> = Vec<(SectionInfo, T)>;
 /// What the sections carry and how they are stressed, at rest.
 fn at_rest(crane: &LiveCrane) -> (Sections<Place>, Sections<StressedSection>) {
     let crane: &dyn DynCrane = crane;
-    let found = crane.equilibrium(&statics::Settings::default());
-    assert!(found.is_stable(), "{found}");
-    let still = vec![0.0; found.q.len()];
-    let wrenches = crane.internal_forces_at(0.0, &found.q, &still, &still);
+    let equilibrium = crane.equilibrium(&statics::Settings::default());
+    assert!(equilibrium.is_stable(), "{equilibrium}");
+    let still = vec![0.0; equilibrium.q.len()];
+    let wrenches = crane.internal_forces_at(0.0, &equilibrium.q, &still, &still);
     let description = crane.description();
-    let x = crane.section_places_at(&found.q);
+    let x = crane.section_places_at(&equilibrium.q);
     let carried = places(description, &x, &wrenches).into_iter().map(|place| (place.info(description).clone(), place));
     let stressed = stressed_sections(description, &crane.section_moduli_at(), &x, &wrenches);
     (carried.collect(), stressed.into_iter().map(|section| (section.info(description).clone(), section)).collect())

@@ -73,14 +73,14 @@ fn loaded(kinematics: &'static str, stiffness: f64, share: f64) -> Case {
     Case::new(GROUP, name, expected, move || {
         let load = share * tipping();
         let subject = Subject::new(&truck(kinematics, stiffness, 0.0, [0.0; 4]))?.set("load", load)?;
-        let found = subject.equilibrium();
-        let carried: f64 = subject.crane.support_reactions_at(&found.q, &[0.0; 6]).iter().map(|force| force.z).sum();
-        let right = match &found.status {
+        let equilibrium = subject.equilibrium();
+        let carried: f64 = subject.crane.support_reactions_at(&equilibrium.q, &[0.0; 6]).iter().map(|force| force.z).sum();
+        let right = match &equilibrium.status {
             Status::Converged => stands && (carried / (GRAVITY * (TRUCK + load)) - 1.0).abs() < 1e-6,
             Status::TipsOver { feet } => !stands && feet.join(" ") == "s3 s0",
             _ => false,
         };
-        expect(right, format!("{found}; {carried:.1} N on the feet"))
+        expect(right, format!("{equilibrium}; {carried:.1} N on the feet"))
     })
 }
 
@@ -108,7 +108,7 @@ fn short_leg(kinematics: &'static str) -> Case {
         let found: Vec<f64> =
             subject.crane.support_reactions_at(&rest.q, &[0.0; 6]).iter().map(|force| force.z).collect();
         // The tilt moves the mass centre by its height times an angle of some 1e-4.
-        let off = found.iter().zip(forces).map(|(found, force)| (found - force).abs()).fold(0.0, f64::max);
+        let off = found.iter().zip(forces).map(|(value, force)| (value - force).abs()).fold(0.0, f64::max);
         expect(off < 1e-3 * weight, format!("{rest}; {found:.0?} N"))
     })
 }

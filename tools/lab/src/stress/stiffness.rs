@@ -136,11 +136,11 @@ fn single_element(spec: Spec, factor: f64) -> Case {
         let rest = subject.rest()?;
         let description = subject.crane.description();
         let tip = subject.crane.points_at(&rest.q)[1];
-        let found = rest.q[subject.index("beam_1_theta")?];
+        let value = rest.q[subject.index("beam_1_theta")?];
         let caution = description.near_singular(&rest.q);
-        let right = (tip.z + sunk).abs() < 1e-8 && (found - angle).abs() < 1e-8 && caution.is_none();
+        let right = (tip.z + sunk).abs() < 1e-8 && (value - angle).abs() < 1e-8 && caution.is_none();
         let warning = caution.map_or(String::new(), |caution| format!("; {caution}"));
-        expect(right, format!("{rest}; tip {:.6} m, {found:.6} rad{warning}", tip.z))
+        expect(right, format!("{rest}; tip {:.6} m, {value:.6} rad{warning}", tip.z))
     })
 }
 

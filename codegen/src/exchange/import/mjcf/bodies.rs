@@ -70,7 +70,7 @@ impl<'a, 'i> File<'a, 'i> {
         let inside = self.elements(node, class);
         let placement = body.frame.outer(&self.pose(node, None, &owner));
         let joints: Vec<&Placed> = inside.iter().filter(|inner| JOINTS.contains(&inner.node.name())).collect();
-        if node.text("gravcomp").is_some_and(|given| given.parse() != Ok(0.0)) {
+        if node.text("gravcomp").is_some_and(|text| text.parse() != Ok(0.0)) {
             self.robot.left_out.push(format!("Gravity compensation of body `{name}` is left out: gravity acts on it."));
         }
 

@@ -92,7 +92,7 @@ impl<'a, 'i> File<'a, 'i> {
     /// The solid of a geom, if it is one whose mass is known, and the ends of its axis if these are given; `None` after a mistake.
     fn sized(&mut self, node: Element<'a, 'i>, class: Option<&str>, kind: &str, owner: &str) -> Option<Sized> {
         let size = match self.classes.find(node, class, "size") {
-            Some(given) => self.reader.some_numbers(given, &format!("`size` of {owner}"))?,
+            Some(attribute) => self.reader.some_numbers(attribute, &format!("`size` of {owner}"))?,
             None => Vec::new(),
         };
         let ends = self.numbers::<6>(node, class, "fromto", owner);

@@ -94,7 +94,7 @@ struct File<'a, 'i> {
 impl<'a, 'i> File<'a, 'i> {
     /// `<compiler>`: how numbers are interpreted.
     fn compiler(&mut self, node: Element<'a, 'i>) {
-        let groups = node.text("inertiagrouprange").map(|given| given.split_whitespace().collect::<Vec<_>>().join(" "));
+        let groups = node.text("inertiagrouprange").map(|text| text.split_whitespace().collect::<Vec<_>>().join(" "));
         if groups.is_some_and(|groups| groups != GROUPS) {
             self.reader.mistakes.push(rule::to_expand(node.tag(), "`inertiagrouprange` of <compiler>"));
         }
@@ -104,15 +104,15 @@ impl<'a, 'i> File<'a, 'i> {
         settings.least_mass = mass.unwrap_or(settings.least_mass);
         settings.least_inertia = inertia.unwrap_or(settings.least_inertia);
         settings.total = total.or(settings.total).filter(|total| *total > 0.0);
-        settings.balances = node.text("balanceinertia").map_or(settings.balances, |given| given == "true");
+        settings.balances = node.text("balanceinertia").map_or(settings.balances, |text| text == "true");
         self.angles.read(node, &mut self.reader);
-        if node.text("coordinate").is_some_and(|given| given != "local") {
+        if node.text("coordinate").is_some_and(|text| text != "local") {
             self.reader.mistakes.push(rule::to_expand(node.tag(), "`coordinate` of <compiler>"));
         }
         // Read where ranges are.
         node.attribute("autolimits");
-        if let Some(given) = node.text("inertiafromgeom") {
-            self.inertia_from_geoms = match given {
+        if let Some(text) = node.text("inertiafromgeom") {
+            self.inertia_from_geoms = match text {
                 "true" => InertiaFromGeoms::Always,
                 "false" => InertiaFromGeoms::Never,
                 _ => InertiaFromGeoms::Auto,

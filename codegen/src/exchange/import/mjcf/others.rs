@@ -100,15 +100,15 @@ impl<'a, 'i> File<'a, 'i> {
             if option.has("gravity") {
                 self.robot.gravity = self.numbers(option, None, "gravity", "<option>");
             }
-            let acts = |key: &&str| option.text(key).is_some_and(|given| given.parse() != Ok(0.0));
+            let acts = |key: &&str| option.text(key).is_some_and(|text| text.parse() != Ok(0.0));
             // All of them are read.
             if ["density", "viscosity"].iter().filter(|key| acts(key)).count() > 0 {
                 self.robot.left_out.push("Forces of the surrounding medium are left out.".to_owned());
             }
             for flag in option.named("flag") {
                 for key in FLAGS {
-                    if let Some(given) = flag.text(key) {
-                        flags.insert(key, given == "disable");
+                    if let Some(text) = flag.text(key) {
+                        flags.insert(key, text == "disable");
                     }
                 }
                 flag.leave_out_rest("switches of what a spec does not have");
@@ -124,8 +124,8 @@ impl<'a, 'i> File<'a, 'i> {
 
     /// The pose of a key frame.
     fn start(&mut self, key: Element<'a, 'i>) {
-        let Some(given) = key.attribute("qpos") else { return };
-        let Some(pose) = self.reader.some_numbers(given, "`qpos` of a key frame") else { return };
+        let Some(attribute) = key.attribute("qpos") else { return };
+        let Some(pose) = self.reader.some_numbers(attribute, "`qpos` of a key frame") else { return };
         let counts: Vec<usize> = self.robot.joints.iter().map(|joint| joint.motion.positions_of_mujoco()).collect();
         let count: usize = counts.iter().sum();
         if pose.len() == count {

@@ -26,11 +26,11 @@ impl Angles {
         if let Some(unit) = node.text("angle") {
             self.unit = if unit == "radian" { 1.0 } else { 1_f64.to_radians() };
         }
-        let Some(given) = node.attribute("eulerseq") else { return };
-        let letters: Vec<char> = given.value().chars().collect();
+        let Some(attribute) = node.attribute("eulerseq") else { return };
+        let letters: Vec<char> = attribute.value().chars().collect();
         match <[char; 3]>::try_from(letters) {
             Ok(letters) if letters.iter().all(|letter| "xyzXYZ".contains(*letter)) => self.sequence = letters,
-            _ => reader.wrong_numbers(given, "`eulerseq` of <compiler>", "three letters of x, y, z, X, Y, Z"),
+            _ => reader.wrong_numbers(attribute, "`eulerseq` of <compiler>", "three letters of x, y, z, X, Y, Z"),
         }
     }
 }
@@ -47,28 +47,28 @@ impl<'a, 'i> File<'a, 'i> {
 
     /// Orientation of an element in the frame around it.
     pub(super) fn orientation(&mut self, node: Element<'a, 'i>, class: Option<&str>, owner: &str) -> Frame {
-        let Some(given) = self.classes.with_any(node, class, &ORIENTATIONS) else { return Frame::WORLD };
-        let keys: Vec<&str> = ORIENTATIONS.into_iter().filter(|key| given.has(key)).collect();
+        let Some(element) = self.classes.with_any(node, class, &ORIENTATIONS) else { return Frame::WORLD };
+        let keys: Vec<&str> = ORIENTATIONS.into_iter().filter(|key| element.has(key)).collect();
         let [key] = keys.as_slice() else {
             let both = keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and ");
-            self.reader.mistakes.push(rule::two_orientations(given.tag(), owner, both));
+            self.reader.mistakes.push(rule::two_orientations(element.tag(), owner, both));
             return Frame::WORLD;
         };
         // Numbers that could not be read are already reported; a direction without length is reported here.
         let frame = match *key {
-            "quat" => self.numbers_of::<4>(given, key, owner).map(from_quaternion),
-            "axisangle" => self.numbers_of::<4>(given, key, owner).map(|[x, y, z, angle]| {
+            "quat" => self.numbers_of::<4>(element, key, owner).map(from_quaternion),
+            "axisangle" => self.numbers_of::<4>(element, key, owner).map(|[x, y, z, angle]| {
                 let axis = unit([x, y, z])?;
                 Some(about(axis, angle * self.angles.unit))
             }),
             "xyaxes" => {
-                self.numbers_of::<6>(given, key, owner).map(|[a, b, c, d, e, f]| from_x_and_y([a, b, c], [d, e, f]))
+                self.numbers_of::<6>(element, key, owner).map(|[a, b, c, d, e, f]| from_x_and_y([a, b, c], [d, e, f]))
             }
-            "zaxis" => self.numbers_of::<3>(given, key, owner).map(with_z_along),
-            _ => self.numbers_of::<3>(given, key, owner).map(|angles| Some(self.euler(angles))),
+            "zaxis" => self.numbers_of::<3>(element, key, owner).map(with_z_along),
+            _ => self.numbers_of::<3>(element, key, owner).map(|angles| Some(self.euler(angles))),
         };
         if let Some(None) = frame {
-            self.reader.mistakes.push(rule::no_orientation(given.tag(), owner, key));
+            self.reader.mistakes.push(rule::no_orientation(element.tag(), owner, key));
         }
         frame.flatten().unwrap_or(Frame::WORLD)
     }

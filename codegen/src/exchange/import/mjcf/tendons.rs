@@ -34,7 +34,7 @@ impl<'a, 'i> File<'a, 'i> {
         for node in root.named("tendon").flat_map(Element::elements) {
             if node.is("fixed") {
                 let held = |name: &str| equalities().flat_map(Element::values).any(|value| value == name);
-                let acts = |key: &str| self.classes.text(node, None, key).is_some_and(|given| given.parse() != Ok(0.0));
+                let acts = |key: &str| self.classes.text(node, None, key).is_some_and(|text| text.parse() != Ok(0.0));
                 if acts("stiffness") || acts("damping") || node.text("name").is_some_and(held) {
                     let _ = node.read();
                 } else {
@@ -61,10 +61,10 @@ impl<'a, 'i> File<'a, 'i> {
         let mut number = |key| self.number(node, None, key, &owner).unwrap_or(0.0);
         let [stiffness, damping] = ["stiffness", "damping"].map(&mut number);
         let rest = self.classes.find(node, None, "springlength");
-        let rest = rest.and_then(|given| self.reader.some_numbers(given, &format!("`springlength` of {owner}")));
+        let rest = rest.and_then(|attribute| self.reader.some_numbers(attribute, &format!("`springlength` of {owner}")));
         let lost = ["frictionloss", "armature"]
             .into_iter()
-            .filter(|key| self.classes.text(node, None, key).is_some_and(|given| given.parse() != Ok(0.0)));
+            .filter(|key| self.classes.text(node, None, key).is_some_and(|text| text.parse() != Ok(0.0)));
         let lost: Vec<String> = lost.map(|key| format!("`{key}`")).collect();
         if !lost.is_empty() {
             self.robot.left_out.push(format!("Left out of {owner}: {}.", lost.join(" and ")));
@@ -145,7 +145,7 @@ impl<'a, 'i> File<'a, 'i> {
         let leader = if node.has(&leader_key) { self.reader.required(node, &leader_key, &owner) } else { None };
         let power = |exponent: usize| if exponent == 1 { 1.0 } else { 0.0 };
         let given = self.classes.find(node, None, "polycoef");
-        let given = given.and_then(|given| self.reader.some_numbers(given, "`polycoef`")).unwrap_or_default();
+        let given = given.and_then(|attribute| self.reader.some_numbers(attribute, "`polycoef`")).unwrap_or_default();
         let [zeroth, first, higher @ ..] =
             [0, 1, 2, 3, 4].map(|exponent| given.get(exponent).copied().unwrap_or_else(|| power(exponent)));
         if leader.is_some() && higher != [0.0; 3] {

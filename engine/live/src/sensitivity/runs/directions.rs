@@ -347,7 +347,7 @@ impl Numbers for Directions<'_> {
     fn stops(&mut self) -> Vec<(f64, Vec<f64>)> {
         let mut all: Vec<(f64, Vec<f64>)> = Vec::new();
         for (number, chunk) in self.chunks.iter().enumerate() {
-            let mut place = 0;
+            let mut index = 0;
             for id in [FunctionId::DrivePieces, FunctionId::LoadPieces, FunctionId::WinchPieces] {
                 let mut evaluation = Evaluation::<Dual8>::new(&self.crane, id);
                 evaluation.set_parameters(&chunk.parameters);
@@ -356,8 +356,8 @@ impl Numbers for Directions<'_> {
                     if number == 0 {
                         all.push((time.value(), Vec::new()));
                     }
-                    all[place].1.extend((0..chunk.count).map(|direction| time.slope(direction)));
-                    place += 1;
+                    all[index].1.extend((0..chunk.count).map(|direction| time.slope(direction)));
+                    index += 1;
                 }
             }
         }
@@ -456,10 +456,10 @@ impl Slopes for Directions<'_> {
             let first = number * DIRECTIONS;
             let along = &along[first..][..*count];
             let (q, v, zeros) = (moved(at.q, 0, along), moved(at.v, n, along), constants(&vec![0.0; n]));
-            for (place, function) in feet.iter_mut().enumerate() {
+            for (index, function) in feet.iter_mut().enumerate() {
                 let numbers = function.at(Dual8::splat(at.t), &q, &v, &zeros);
                 for (direction, out) in out[first..].iter_mut().take(*count).enumerate() {
-                    let slopes = in_order(out)[place].iter_mut().zip(numbers);
+                    let slopes = in_order(out)[index].iter_mut().zip(numbers);
                     slopes.for_each(|(slope, number)| *slope = number.slope(direction));
                 }
             }

@@ -125,13 +125,13 @@ fn assert_transposed(what: &str, crane: &LiveCrane, duration: f64, moves: bool) 
         let is_of_start = |along: &Along| matches!(along, Along::Position(_) | Along::Rate(_));
         let starts = along.iter().zip(&expected).filter(|(along, _)| is_of_start(along));
         let largest = starts.fold(0.0, |size: f64, (_, expected)| size.max(expected.abs()));
-        for ((along, found), expected) in along.iter().zip(found).zip(&expected) {
+        for ((along, value), expected) in along.iter().zip(found).zip(&expected) {
             let size = if is_of_start(along) { largest } else { expected.abs() };
             compared += 1;
-            let off = (found - expected).abs() / size.max(1e-8);
+            let off = (value - expected).abs() / size.max(1e-8);
             if off.is_nan() || off > tolerance {
                 wrong.push(format!(
-                    "{} of {} by {along:?} is {found:e}, not {expected:e}: {off:.1e}",
+                    "{} of {} by {along:?} is {value:e}, not {expected:e}: {off:.1e}",
                     measure.name(),
                     recorded.table.columns[*column].name
                 ));
