@@ -59,10 +59,15 @@ fn unsupported_robots_are_refused_with_the_reason() {
         let file = path.file_name().expect("a name").to_string_lossy();
         let source = SourceFile::new(&*file, std::fs::read_to_string(&path).expect("a file"));
         let fixed = if name.starts_with("U013") { vec!["sholder".to_owned()] } else { Vec::new() };
-        let diagnostics = exchange::import(&source, &ImportOptions { fixed, ..ImportOptions::default() }).expect_err(&name);
+        let diagnostics =
+            exchange::import(&source, &ImportOptions { fixed, ..ImportOptions::default() }).expect_err(&name);
         snapshot(&name, &diagnostics.to_string());
         let code = name.split('_').next().expect("a code").to_owned();
-        assert_eq!(diagnostics.mistakes().iter().map(|mistake| mistake.code).collect::<Vec<_>>(), [&code], "{name}: {diagnostics}");
+        assert_eq!(
+            diagnostics.mistakes().iter().map(|mistake| mistake.code).collect::<Vec<_>>(),
+            [&code],
+            "{name}: {diagnostics}"
+        );
         shown.insert(code);
     }
     for rule in exchange::CATALOGUE {

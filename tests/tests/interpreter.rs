@@ -24,11 +24,10 @@ fn interpret(crane: &Interpreted, quantity: &Quantity, inputs: &Inputs<Runtime>)
         "linearised_damping" => linearised(2),
         "mass_matrix_lower" => {
             let both = crane.get("mass_matrix_and_bias", inputs, 0);
-            let slot = |i: usize, j: usize| j * n - j * j.saturating_sub(1) / 2 + i - j;
-            let entry = |i: usize, j: usize| if j <= i { both[slot(i, j)] } else { Runtime(0.0) };
+            let entry = |i: usize, j: usize| if j <= i { both[i * n + j] } else { Runtime(0.0) };
             (0..n * n).map(|k| entry(k / n, k % n)).collect()
         }
-        "bias_with_mass_matrix" => crane.get("mass_matrix_and_bias", inputs, 0).split_off(n * (n + 1) / 2),
+        "bias_with_mass_matrix" => crane.get("mass_matrix_and_bias", inputs, 0).split_off(n * n),
         "lane_forward_dynamics" => crane.get("forward_dynamics", inputs, n),
         "implicit_solution" => implicit_solution(crane, inputs),
         "prescribed" => prescribed(crane, inputs),

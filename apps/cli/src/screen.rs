@@ -137,8 +137,8 @@ impl Console {
         let _ = writeln!(messages, "{}", words.trim_end());
     }
 
-    fn drawn(&self, diagnostics: &Diagnostics) -> String {
-        if self.colours[1] { diagnostics.coloured() } else { diagnostics.to_string() }
+    fn drawn(&self, found: &Diagnostics) -> String {
+        if self.colours[1] { found.coloured() } else { found.to_string() }
     }
 
     /// Notes the crane that work begins on.
@@ -154,13 +154,13 @@ impl Console {
     }
 
     /// Shows warnings about a spec.
-    pub(super) fn warn(&self, diagnostics: &Diagnostics) {
+    pub(super) fn warn(&self, found: &Diagnostics) {
         self.warned.store(true, Ordering::Relaxed);
         if self.is_quiet() {
         } else if self.is_json() {
-            self.tell(&json!({"warnings": diagnostics(diagnostics)}).to_string());
+            self.tell(&json!({"warnings": diagnostics(found)}).to_string());
         } else {
-            self.tell(&self.drawn(diagnostics));
+            self.tell(&self.drawn(found));
         }
     }
 

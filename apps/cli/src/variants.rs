@@ -103,7 +103,9 @@ impl Edit<'_> {
     /// What mistakes of the edit mean.
     fn refused(&self, name: &str, diagnostics: Diagnostics) -> Problem {
         match self {
-            Self::Rigid(otherwise) if diagnostics.mistakes().iter().any(|mistake| mistake.code == code::nothing_moves) => {
+            Self::Rigid(otherwise)
+                if diagnostics.mistakes().iter().any(|mistake| mistake.code == code::nothing_moves) =>
+            {
                 Problem::usage(format!("with rigid beams, nothing in {name} can move: only its beams do"), *otherwise)
             }
             Self::Rigid(otherwise) => {
@@ -188,11 +190,12 @@ mod tests {
     fn rigid(crane: &str, text: &str) -> Result<Option<String>, String> {
         let checked = compile::check(&SourceFile::new(crane, text)).unwrap_or_else(|mistakes| panic!("{mistakes}"));
         let Some(change) = super::rigid(crane, &checked.spec.crane)? else { return Ok(None) };
-        let changed = checked.spec.changed(&change).and_then(check).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+        let changed =
+            checked.spec.changed(&change).and_then(check).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         let text = changed.spec.saved().text.clone();
         // What is saved is the same crane.
-        let saved =
-            compile::load(&SourceFile::new("saved.yaml", text.as_str())).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+        let saved = compile::load(&SourceFile::new("saved.yaml", text.as_str()))
+            .unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         assert_eq!(format!("{:?}", changed.chain), format!("{saved:?}"));
         Ok(Some(text))
     }

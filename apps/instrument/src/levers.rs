@@ -81,7 +81,8 @@ pub fn with_levers(chain: &Chain, driven: bool) -> Chain {
     let mut chain = chain.clone();
     for (index, drive) in chain.drives.iter_mut().enumerate() {
         let first = chain.parameters.len();
-        let start = drive.profile.start(&chain.parameters.iter().map(|parameter| parameter.default).collect::<Vec<_>>());
+        let start =
+            drive.profile.start(&chain.parameters.iter().map(|parameter| parameter.default).collect::<Vec<_>>());
         let names = ["position", "rate", "begin", "change", "ramp", "opening"];
         for (name, default) in names.iter().zip(Numbers::holding(start).array()) {
             chain.parameters.push(Parameter {

@@ -93,7 +93,8 @@ pub fn import_robot(
         })
     };
     let options = ImportOptions { fixed: fix, repair };
-    let imported = py.detach(|| exchange::import(&source, &options)).map_err(|diagnostics| spec_error(py, &diagnostics))?;
+    let imported =
+        py.detach(|| exchange::import(&source, &options)).map_err(|diagnostics| spec_error(py, &diagnostics))?;
     py.detach(|| check_import(&imported)).map_err(|deviation| {
         PyRuntimeError::new_err(format!("{named}: the spec does not move as the robot's file says: {deviation}"))
     })?;

@@ -129,8 +129,11 @@ fn by_all(
         fixed.iter().map(|number| number.differentiate(crane, &sensitivity, &settings)).collect::<Result<_, _>>()?;
     let of_fixed = differences.iter().map(|own| own.derivatives.clone());
     sensitivity.derivatives = in_order(names, std::mem::take(&mut sensitivity.derivatives).into_iter(), of_fixed);
-    sensitivity.pose =
-        in_order(names, std::mem::take(&mut sensitivity.pose).into_iter(), differences.iter().map(|own| own.pose.clone()));
+    sensitivity.pose = in_order(
+        names,
+        std::mem::take(&mut sensitivity.pose).into_iter(),
+        differences.iter().map(|own| own.pose.clone()),
+    );
     sensitivity.notes.extend(fixed.iter().map(|number| {
         format!("{} cannot be a live parameter: its derivatives are differences of whole cranes", number.place)
     }));

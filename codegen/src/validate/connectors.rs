@@ -71,7 +71,9 @@ impl<'a> Check<'a> {
         let over: Vec<_> =
             sheaves.iter().map(|sheave| self.attachment(sheave, &format!("a sheave of rope `{name}`"))).collect();
         let falls = connector.falls.as_ref().map_or(Some(1), |constant| {
-            self.count(constant, &format!("the falls of rope `{name}`"), |count| rule::falls(constant.span, name, count))
+            self.count(constant, &format!("the falls of rope `{name}`"), |count| {
+                rule::falls(constant.span, name, count)
+            })
         });
         let points: Option<Vec<Attachment>> = [from].into_iter().chain(over).chain([to]).collect();
         Some(StrainLine { points: points?, falls: falls? })

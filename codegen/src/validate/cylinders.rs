@@ -37,8 +37,10 @@ impl<'a> Check<'a> {
         let max_flow = self.constant(&pump.max_flow, "the maximum flow of the pump");
         let pressure = pump.pressure.as_ref();
         let pressure = pressure.map(|constant| self.constant(constant, "the pressure of the pump"));
-        let volume =
-            pump.volume.as_ref().map_or(VOLUME, |constant| self.constant(constant, "the volume between pump and valves"));
+        let volume = pump
+            .volume
+            .as_ref()
+            .map_or(VOLUME, |constant| self.constant(constant, "the volume between pump and valves"));
         Some(Pump { max_flow, pressure, volume })
     }
 
@@ -144,8 +146,9 @@ impl<'a> Check<'a> {
         }
         let retracted = self.constant(&given.retracted, &subject("retracted length"));
         let stroke = self.constant(&given.stroke, &subject("stroke"));
-        let mut pressure =
-            |given: Option<&Spanned<Constant>>, what: &str| given.map(|constant| self.constant(constant, &subject(what)));
+        let mut pressure = |given: Option<&Spanned<Constant>>, what: &str| {
+            given.map(|constant| self.constant(constant, &subject(what)))
+        };
         let max_pressure = pressure(given.max_pressure.as_ref(), "maximum pressure");
         let back_pressure = pressure(given.back_pressure.as_ref(), "back pressure").unwrap_or(0.0);
         let bulk_modulus = pressure(given.bulk_modulus.as_ref(), "bulk modulus");

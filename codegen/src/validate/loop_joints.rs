@@ -113,7 +113,11 @@ impl<'a> Check<'a> {
         let mut joints = std::mem::take(&mut chain.loop_joints);
         for (joint, loop_joint) in joints.iter_mut().zip(entries(crane.loop_joints.as_ref())) {
             if chain.closed_by(joint).into_iter().all(|coordinate| chain.is_prescribed(coordinate)) {
-                self.report(rule::prescribed_loop(loop_joint.name.span, format!("loop joint `{}`", joint.name), "loop"));
+                self.report(rule::prescribed_loop(
+                    loop_joint.name.span,
+                    format!("loop joint `{}`", joint.name),
+                    "loop",
+                ));
             }
             match &mut joint.kind {
                 LoopJointKind::Pin { across, to_axis } => {

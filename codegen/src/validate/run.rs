@@ -128,8 +128,9 @@ impl<'a> Check<'a> {
 
     pub(super) fn run(&mut self, given: Option<&Spanned<spec::Run>>) -> Run {
         let run = given.and_then(|given| given.value.clone()).unwrap_or_default();
-        let mut seconds =
-            |given: Option<&Spanned<Constant>>, default, key| given.map_or(default, |constant| self.constant(constant, key));
+        let mut seconds = |given: Option<&Spanned<Constant>>, default, key| {
+            given.map_or(default, |constant| self.constant(constant, key))
+        };
         let duration = seconds(run.duration.as_ref(), 10.0, "`duration`");
         let step = seconds(run.step.as_ref(), 1e-4, "`step`");
         let output = seconds(run.output.as_ref(), 0.01, "`output`");

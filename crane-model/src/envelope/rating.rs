@@ -108,7 +108,8 @@ impl Posed<'_> {
         if equilibrium.steps() <= 1 {
             return Some(equilibrium);
         }
-        let between = |part: f64| begin.iter().zip(&equilibrium.q).map(|(a, b)| a + part * (b - a)).collect::<Vec<f64>>();
+        let between =
+            |part: f64| begin.iter().zip(&equilibrium.q).map(|(a, b)| a + part * (b - a)).collect::<Vec<f64>>();
         let mut stiffness = |part: f64| self.with_load(from + part * (to - from))?.stiffness_at(&between(part));
         let least = stiffness(0.0)?.min(stiffness(1.0)?) - DIP.ln();
         if BETWEEN.iter().any(|part| stiffness(*part).is_none_or(|between| between < least)) {

@@ -57,7 +57,8 @@ impl ResidualScale {
         let mut places = vec![Vector3::zeros(); crane.description().supports.len()];
         crane.support_places(&mut places);
         let supports = crane.description().supports.iter().zip(places);
-        let exact = supports.filter(|(support, _)| !support.linear).flat_map(|(_, position)| <[f64; 3]>::from(position));
+        let exact =
+            supports.filter(|(support, _)| !support.linear).flat_map(|(_, position)| <[f64; 3]>::from(position));
         let farthest = exact.fold(0.0, |far: f64, x| far.max(x.abs()));
         let reach = DVector::from_fn(n, |i, _| match (coordinates[i].role, coordinates[i].kind) {
             (CoordinateRole::Base, CoordinateKind::Translation) => farthest,

@@ -20,7 +20,8 @@ pub(crate) fn with_tipped_status(crane: &dyn DynCrane, t: f64, from: &[f64], equ
     let description = crane.description();
     let feet = || description.supports.iter().filter(|support| support.one_sided);
     let fell = description.has_tipped(from, &equilibrium.q);
-    let stands = equilibrium.is_stable() || equilibrium.status == Status::NotConverged && equilibrium.residual() < AT_REST;
+    let stands =
+        equilibrium.is_stable() || equilibrium.status == Status::NotConverged && equilibrium.residual() < AT_REST;
     if feet().next().is_none() || stands && !fell {
         return equilibrium;
     }

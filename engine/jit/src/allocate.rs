@@ -69,17 +69,17 @@ pub fn allocate(mut operations: Operations, processor: Processor) -> Allocated {
         let at = index(at);
         match action {
             Action::Operation(operation) => allocation.compute(at, *operation, after, false),
-            Action::Store(index, node) => {
+            Action::Store(place, node) => {
                 let register = allocation.bring(at, *node, 0);
-                allocation.instructions.push(Instruction::Result(register, fixed(*index)));
+                allocation.instructions.push(Instruction::Result(register, fixed(*place)));
                 allocation.used(*node, after.first().copied());
             }
             Action::Pause(arguments, ..) => {
                 let pause = pauses.next();
                 for (offset, (node, after)) in arguments.iter().zip(after).enumerate() {
                     let register = allocation.bring(at, *node, 0);
-                    let index = pause.map_or(0, |pause| pause.arguments + offset);
-                    allocation.instructions.push(Instruction::Store(register, fixed(index(index))));
+                    let place = pause.map_or(0, |pause| pause.arguments + offset);
+                    allocation.instructions.push(Instruction::Store(register, fixed(index(place))));
                     allocation.used(*node, Some(*after));
                 }
                 allocation.empty();
@@ -131,8 +131,8 @@ impl<'a> Allocation<'a> {
         let mut uses = Vec::with_capacity(reads.len());
         for (at, reads) in reads.enumerate().rev() {
             let mut after = vec![NEVER; reads.len()];
-            for (index, node) in reads.iter().enumerate().rev() {
-                after[index] = std::mem::replace(&mut self.next[*node as usize], index(at));
+            for (place, node) in reads.iter().enumerate().rev() {
+                after[place] = std::mem::replace(&mut self.next[*node as usize], index(at));
             }
             uses.push(after);
         }
@@ -142,9 +142,9 @@ impl<'a> Allocation<'a> {
 
     /// A loop. Registers are empty before each iteration.
     fn repeat(&mut self, at: u32, own: &'a Loop, reads: &'a [Node]) {
-        for (node, index) in &own.copies {
+        for (node, place) in &own.copies {
             let register = self.bring(at, *node, 0);
-            self.instructions.push(Instruction::Store(register, fixed(*index)));
+            self.instructions.push(Instruction::Store(register, fixed(*place)));
         }
         self.empty();
         self.instructions.push(Instruction::Begin(own.iterations));
@@ -153,9 +153,9 @@ impl<'a> Allocation<'a> {
             self.next[*node as usize] = NEVER;
         }
         let uses = self.uses(own.operations.iter().map(Operation::operands));
-        for (index, (operation, after)) in own.operations.iter().zip(&uses).enumerate() {
+        for (place, (operation, after)) in own.operations.iter().zip(&uses).enumerate() {
             self.stored[operation.out as usize] = false;
-            self.compute(index(index), *operation, after, own.saved[index]);
+            self.compute(index(place), *operation, after, own.saved[place]);
             self.release();
         }
         self.moving = None;
@@ -193,8 +193,8 @@ impl<'a> Allocation<'a> {
             return register;
         }
         let register = self.free(at, kept);
-        let location = self.place(node);
-        self.instructions.push(Instruction::Load(register, location));
+        let place = self.place(node);
+        self.instructions.push(Instruction::Load(register, place));
         self.hold(register, node);
         register
     }
@@ -237,8 +237,8 @@ impl<'a> Allocation<'a> {
         if let Some(node) = self.held[register].take() {
             self.register[node as usize] = None;
             if !std::mem::replace(&mut self.stored[node as usize], true) {
-                let location = self.place(node);
-                self.instructions.push(Instruction::Store(u8::try_from(register).unwrap_or_default(), location));
+                let place = self.place(node);
+                self.instructions.push(Instruction::Store(u8::try_from(register).unwrap_or_default(), place));
             }
         }
     }
@@ -265,8 +265,8 @@ impl<'a> Allocation<'a> {
         };
         let in_place = self.read_in_place(at, operation, after);
         let mut operands = [Operand::Register(0); 3];
-        for (index, node) in reads.iter().enumerate() {
-            operands[index] = if in_place == Some(index) {
+        for (place, node) in reads.iter().enumerate() {
+            operands[place] = if in_place == Some(place) {
                 Operand::Memory(self.place(*node))
             } else {
                 let kept = kept(self);
@@ -289,8 +289,8 @@ impl<'a> Allocation<'a> {
         let spare = if is_separate { self.free(at, in_use | 1 << register) } else { 0 };
         self.instructions.push(Instruction::Compute { kind, out: register, operands, spare });
         if saved {
-            let location = self.place(out);
-            self.instructions.push(Instruction::Store(register, location));
+            let place = self.place(out);
+            self.instructions.push(Instruction::Store(register, place));
             self.stored[out as usize] = true;
         }
         if self.next[out as usize] == NEVER {
@@ -307,13 +307,13 @@ impl<'a> Allocation<'a> {
             Kind::Minimum | Kind::Maximum | Kind::Choice => false,
         };
         let is_alone = |place: usize| reads.iter().filter(|node| **node == reads[place]).count() == 1;
-        let places = (0..reads.len()).filter(|index| {
-            self.register[reads[*index] as usize].is_none()
-                && may_be(*index)
-                && is_alone(*index)
-                && !self.is_worth_a_register(at, after[*index])
+        let places = (0..reads.len()).filter(|place| {
+            self.register[reads[*place] as usize].is_none()
+                && may_be(*place)
+                && is_alone(*place)
+                && !self.is_worth_a_register(at, after[*place])
         });
-        places.max_by_key(|index| after[*index]).filter(|_| self.processor.operands_in_memory)
+        places.max_by_key(|place| after[*place]).filter(|_| self.processor.operands_in_memory)
     }
 
     /// The register that a fused result takes over from an operand, which is copied or loaded if it is needed later.
@@ -329,7 +329,7 @@ impl<'a> Allocation<'a> {
         let memory = operands.iter().position(|operand| matches!(operand, Operand::Memory(_)));
         let taken = memory.unwrap_or(2);
         self.instructions.push(match operands[taken] {
-            Operand::Memory(location) => Instruction::Load(register, location),
+            Operand::Memory(place) => Instruction::Load(register, place),
             Operand::Register(from) => Instruction::Move(register, from),
         });
         operands[taken] = Operand::Register(register);

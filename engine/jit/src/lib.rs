@@ -16,17 +16,17 @@
 //! `vectors` calls code that the compiler has translated for several sets of instructions. Both contain all unsafe code of this crate.
 //!
 //! ```
-//! use crane_jit::{Code, Line, Rounding, Step, Width};
+//! use crane_jit::{Code, StraightLine, Rounding, Step, Width};
 //!
 //! // a b − c of three given values
 //! let product = Step::MulAdd([0, 1, 3]);
 //! let difference = Step::MulAdd([2, 4, 5]);
-//! let line = Line {
+//! let line = StraightLine {
 //!     given: vec![None, None, None, Some(-0.0), Some(-1.0)],
 //!     steps: vec![product, difference, Step::Store { place: 0, value: 6 }],
 //!     results: 1,
 //! };
-//! if let Some(code) = Code::of(&line, Rounding::Separate, Width::One) {
+//! if let Some(code) = Code::compile(&line, Rounding::Separate, Width::One) {
 //!     let mut frame = vec![0.0; code.places().max(5)];
 //!     frame[..5].copy_from_slice(&[2.0, 3.0, 5.0, -0.0, -1.0]);
 //!     code.numbers().for_each(|(place, number)| frame[place] = number);

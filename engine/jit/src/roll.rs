@@ -35,7 +35,7 @@ pub struct Loop {
 impl Loop {
     /// Whether a processor has a register for places that move by this step: two are kept for records and for copies.
     fn has_room_for(&self, step: i32) -> bool {
-        let mut steps: Vec<i32> = self.moving.values().map(|location| location.step).collect();
+        let mut steps: Vec<i32> = self.moving.values().map(|place| place.step).collect();
         steps.sort_unstable();
         steps.dedup();
         steps.contains(&step) || steps.len() + 2 < MOST_STEPS
@@ -102,10 +102,10 @@ impl Rolling<'_> {
             let here = self.repeats.get(of).filter(|repeat| at >= repeat.start);
             let here = here.map(|repeat| [of, (at - repeat.start) / repeat.period]);
             for node in action.reads() {
-                if let Some([of, k, index]) = self.origin(*node)
+                if let Some([of, k, place]) = self.origin(*node)
                     && here != Some([of, k])
                 {
-                    needed[of][index] = true;
+                    needed[of][place] = true;
                 }
             }
         }
@@ -146,17 +146,17 @@ impl Rolling<'_> {
                             (!nodes[of].contains_key(&key)).then(|| (key, self.carry(of, initial, at, &mut loops[of])))
                         }
                         Source::Stream(stream) if !carried => (!nodes[of].contains_key(&stream)).then(|| {
-                            let location = self.follow(&stream, &mut loops[of]);
-                            (stream, location)
+                            let place = self.follow(&stream, &mut loops[of]);
+                            (stream, place)
                         }),
                         _ => None,
                     }
                     .unzip();
-                    if let (Some(key), Some(location)) = (key, place) {
+                    if let (Some(key), Some(place)) = (key, place) {
                         let node = index(self.operations.nodes);
                         self.operations.nodes += 1;
                         nodes[of].insert(key, node);
-                        loops[of].moving.insert(node, location);
+                        loops[of].moving.insert(node, place);
                     }
                 }
             }
@@ -197,7 +197,7 @@ impl Rolling<'_> {
             let fits = |k: usize| match known[k] {
                 Some(place) => wanted(k).map(i64::from) == Some(place),
                 // A node has one place, so one that comes twice does not move evenly.
-                None => !stream[..k].contains(&stream[k]) && wanted(k).is_some_and(|index| self.is_spare(index)),
+                None => !stream[..k].contains(&stream[k]) && wanted(k).is_some_and(|place| self.is_spare(place)),
             };
             (0..stream.len()).all(fits).then(|| (wanted(0), i32::try_from(step).ok()))
         });
@@ -207,34 +207,34 @@ impl Rolling<'_> {
         };
         for (k, node) in stream.iter().enumerate().filter(|(k, _)| known[*k].is_none()) {
             let place = i64::from(first) + i64::from(step) * i64::try_from(k).unwrap_or_default();
-            let index = u32::try_from(place).unwrap_or_default();
-            self.claimed.insert(index, *node);
-            self.places.set(*node, index);
+            let place = u32::try_from(place).unwrap_or_default();
+            self.claimed.insert(place, *node);
+            self.places.set(*node, place);
         }
         Location { at: first.cast_signed(), step }
     }
 
     /// Whether a place is in a spare record and not in use.
-    fn is_spare(&self, index: u32) -> bool {
+    fn is_spare(&self, place: u32) -> bool {
         let within = |(records, repeat): (&Records, &Repeat)| {
             let from = |record: usize| records.before + index(record * records.size);
             let first = from(0) - index((SPARE - 1) * records.size);
             let end = from(repeat.iterations + 1 + SPARE);
-            (first..end).contains(&index) && !(from(1)..from(repeat.iterations + 1)).contains(&index)
+            (first..end).contains(&place) && !(from(1)..from(repeat.iterations + 1)).contains(&place)
         };
-        !self.claimed.contains_key(&index) && self.records.iter().zip(&self.repeats).any(within)
+        !self.claimed.contains_key(&place) && self.records.iter().zip(&self.repeats).any(within)
     }
 
     /// Copies of nodes next to each other.
     fn gather(&mut self, nodes: &[Node], own: &mut Loop) -> Location {
         let first = self.places.reserve(nodes.len());
-        for (index, node) in (first..).zip(nodes) {
+        for (place, node) in (first..).zip(nodes) {
             if let Some(number) = self.operations.given.get(*node as usize).copied().flatten() {
-                own.numbers.push((index as usize, number));
+                own.numbers.push((place as usize, number));
             } else if self.places.get(*node).is_none() {
-                self.places.set(*node, index);
+                self.places.set(*node, place);
             } else {
-                own.copies.push((*node, index));
+                own.copies.push((*node, place));
             }
         }
         moving(first, 1)
@@ -246,14 +246,14 @@ impl Rolling<'_> {
         own.iterations = index(*iterations);
         for at in 0..*period {
             let Action::Operation(mut operation) = self.operations.actions[start + at] else { continue };
-            for (index, source) in sources[at].iter().enumerate() {
+            for (place, source) in sources[at].iter().enumerate() {
                 let moved = match source {
                     Source::Inner(_) | Source::Invariant(_) => None,
                     Source::Carried(initial, at) => nodes.get(&self.key(of, *initial, *at)),
                     Source::Stream(stream) => nodes.get(stream),
                 };
                 if let Some(moved) = moved {
-                    operation.replace(index, *moved);
+                    operation.replace(place, *moved);
                 }
             }
             let Records { before, size, cells } = &self.records[of];

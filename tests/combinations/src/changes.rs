@@ -72,15 +72,15 @@ fn differences(
     let coincide = sensitivity.notes.iter().any(|note| note.contains("coincide"));
     let counts = |index: usize| {
         let output = &sensitivity.outputs[index];
-        let [one, other] =
-            [before, after].map(|sensitivity| sensitivity.index_of(&output.name).map(|index| &sensitivity.outputs[index].place));
+        let [one, other] = [before, after]
+            .map(|sensitivity| sensitivity.index_of(&output.name).map(|index| &sensitivity.outputs[index].place));
         let is_same = one.is_some() && one == other && one == Some(&output.place);
         if output.group == Group::Frequencies { !coincide } else { is_same }
     };
     let slope = |index: usize| {
         let name = &sensitivity.outputs[index].name;
-        let [one, other] =
-            [before, after].map(|sensitivity| sensitivity.index_of(name).map_or(f64::NAN, |index| sensitivity.values[index]));
+        let [one, other] = [before, after]
+            .map(|sensitivity| sensitivity.index_of(name).map_or(f64::NAN, |index| sensitivity.values[index]));
         (other - one) / (2.0 * step)
     };
     // Where nothing twists a telescope, rotations and torques of its pads are rounding beside their ways and forces.
@@ -100,7 +100,8 @@ fn differences(
         })
     };
     let wrong = |index: usize| {
-        let (own, expected, output) = (sensitivity.derivatives[place][index], slope(index), &sensitivity.outputs[index]);
+        let (own, expected, output) =
+            (sensitivity.derivatives[place][index], slope(index), &sensitivity.outputs[index]);
         let size = expected.abs() + 0.1 * sensitivity.values[index].abs() / per;
         let off = (own - expected).abs();
         let allowed = TOLERANCE * size + OF_LARGEST * largest(output.group, output.unit);

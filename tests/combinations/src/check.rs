@@ -79,7 +79,11 @@ fn apply(check: &str, tree: &Tree, seed: u64, extent: Extent) -> Option<Vec<Stri
                     numbers.iter().filter(|(name, number)| number.group == CAUTIONS && !first.contains_key(*name));
                 // Exported files are of parameters, and say nothing of inputs.
                 let sets = |crane: &LiveCrane| {
-                    crane.chain().parameters.iter().any(|parameter| second.set.iter().any(|(name, _)| parameter.name == *name))
+                    crane
+                        .chain()
+                        .parameters
+                        .iter()
+                        .any(|parameter| second.set.iter().any(|(name, _)| parameter.name == *name))
                 };
                 let set = live_with(&second.source, &second.set).ok().filter(sets);
                 let shown = live(&source(tree)).ok().zip(set).map(|(written, set)| shown::differences(&written, &set));

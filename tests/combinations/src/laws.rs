@@ -305,7 +305,8 @@ fn springs_carry(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Resul
     let mut applies = false;
     for (t, q, v, a) in motions {
         let moments = whole.element_moments_at(&q, &v);
-        let of_elements = description.coordinates.iter().enumerate().filter(|(_, coordinate)| coordinate.role.is_element());
+        let of_elements =
+            description.coordinates.iter().enumerate().filter(|(_, coordinate)| coordinate.role.is_element());
         let springs: Vec<(&str, f64)> =
             of_elements.zip(moments).map(|((_, coordinate), moment)| (coordinate.name.as_str(), moment)).collect();
         let transforms = whole.transforms_at(&q);

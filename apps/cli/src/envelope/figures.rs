@@ -37,7 +37,8 @@ impl Heading {
             none if none.is_empty() => none,
             names => format!("; combinations {names}"),
         };
-        let factor = if envelope.factor > 1.0 { format!(" of {} times the load", envelope.factor) } else { String::new() };
+        let factor =
+            if envelope.factor > 1.0 { format!(" of {} times the load", envelope.factor) } else { String::new() };
         Self(vec![
             format!("{}, spec {hash}{combinations}", layout.description.name),
             format!("Limits{factor}: {}", coverage.considered.join("; ")),
@@ -80,7 +81,8 @@ pub fn write_chart_figures(
         let title = heading.headings(&format!("Largest {parameter} over the slewing angle [{}]", load.unit));
         save("slew_diagram", crate::figures::titled(&title, &[slew_diagram(envelope, layout, rows, slewing)], 1))?;
     }
-    let varying: Vec<usize> = (0..envelope.axes.0.len()).filter(|axis| envelope.axes.0[*axis].values.len() > 1).collect();
+    let varying: Vec<usize> =
+        (0..envelope.axes.0.len()).filter(|axis| envelope.axes.0[*axis].values.len() > 1).collect();
     if let [.., y, x] = varying[..] {
         let title =
             heading.headings(&format!("Largest {parameter} [{}], the least over all else that varies", load.unit));

@@ -61,8 +61,9 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     let description = crane.description();
     let unit_of_load = &description.parameters[envelope.load].unit;
     let given = options.given.as_deref();
-    let given =
-        given.map(|file| Given::read(&registry.console, file, unit_of_load, description, &envelope.axes)).transpose()?;
+    let given = given
+        .map(|file| Given::read(&registry.console, file, unit_of_load, description, &envelope.axes))
+        .transpose()?;
     files::folder(&options.folder.out)?;
     let name = format!("{}_envelope", description.name);
     let (rows, journals) = rows_of(options, registry, crane.as_ref(), (&envelope, &layout))?;

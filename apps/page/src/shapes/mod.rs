@@ -617,7 +617,8 @@ impl<'a> Builder<'a> {
         let wall = body.length > 0.0 && self.is_nothing(first);
         let normal = if wall { self.reference[0].column(0).xyz() } else { Vector3::z() };
         self.fixed(Owner::Ground, BASE, Mesh::rod(-normal * (0.5 * side), Vector3::zeros(), [2.0 * side; 2], 40));
-        let slides = self.coordinates[body.own.clone()].iter().any(|coordinate| coordinate.kind == CoordinateKind::Translation);
+        let slides =
+            self.coordinates[body.own.clone()].iter().any(|coordinate| coordinate.kind == CoordinateKind::Translation);
         if !slides && !self.is_nothing(first) {
             self.fixed(Owner::Ground, BASE, Mesh::bar(Vector3::zeros(), first, [1.1 * side; 2]));
         }

@@ -104,7 +104,13 @@ impl Camera {
         let distance = seen.iter().map(|corner| corner.z + ROOM * off(corner).into_iter().fold(0.0, f64::max) / SLOPE);
         let distance = distance.fold(f64::NEG_INFINITY, f64::max) + 0.02 * size;
         let position = turn.transpose() * Vector3::new(centre.x, centre.y, distance);
-        Self { turn, place: position, focus: least / 2.0 / SLOPE, middle: sides.map(|side| side / 2.0), near: 0.01 * size }
+        Self {
+            turn,
+            place: position,
+            focus: least / 2.0 / SLOPE,
+            middle: sides.map(|side| side / 2.0),
+            near: 0.01 * size,
+        }
     }
 
     /// A place as [`Triangle`] has it, unless it is too near or behind the camera.
@@ -140,7 +146,8 @@ pub fn draw(figure: &Figure, view: &View, shown: &[Vector3<f64>]) -> Vec<u8> {
             let tone = EDGE + (1.0 - EDGE) * normal.dot(&light).abs();
             triangles.extend(seen(&camera, places, shape.paint.colour.map(|channel| byte(f64::from(channel) * tone))));
             if sees_ground && shape.owner != Owner::Ground {
-                let fallen = places.map(|position| position - Vector3::from(SUN) * ((position.z - ground.level) / SUN[2]));
+                let fallen =
+                    places.map(|position| position - Vector3::from(SUN) * ((position.z - ground.level) / SUN[2]));
                 shadows.extend(seen(&camera, fallen, [0; 3]));
             }
         }

@@ -26,7 +26,8 @@ pub fn extremes(runs: &[(&str, &Recorded)]) -> Grid {
                 }
                 let Extremes { minimum, time_of_minimum, maximum, time_of_maximum } =
                     Extremes::of_column(&run.table, name);
-                let found = run.verification.as_ref().and_then(|verification| verification.find_errors(&run.table, name));
+                let found =
+                    run.verification.as_ref().and_then(|verification| verification.find_errors(&run.table, name));
                 let uncertain =
                     [0, 1].map(|k| found.map_or(Cell::Empty, |found| Cell::error_of_unit(found[k], &kind.unit)));
                 let [least, most] = [minimum, maximum].map(|value| Cell::of_unit(value, &kind.unit));

@@ -89,8 +89,7 @@ impl Plausibility<'_> {
         let of_drives = of_drives.filter_map(|drive| drive.motion.as_ref()?.value.as_ref());
         let mut found: Vec<(f64, Span)> = of_drives.flat_map(|motion| self.stations(motion)).collect();
         let guess = crane.guess.as_ref().and_then(|guess| guess.value.as_ref());
-        let guess =
-            guess.into_iter().flat_map(|guess| &guess.0).filter(|(text, _)| text.value.as_ref() == Some(name));
+        let guess = guess.into_iter().flat_map(|guess| &guess.0).filter(|(text, _)| text.value.as_ref() == Some(name));
         found.extend(guess.filter_map(|(_, at)| Some((self.scalar(&at.value.as_ref()?.0), at.span))));
         let Some(leaders) = leaders.checked_sub(1) else { return found };
         for follower in chain.followers().filter(|follower| follower.coordinate == coordinate) {

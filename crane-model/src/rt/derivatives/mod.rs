@@ -210,21 +210,6 @@ impl Piece {
         let zero = C::zero();
         for unit in self.units.clone() {
             for (index, matrix) in matrices.iter().enumerate() {
-                // A⁻¹ is symmetric.
-                if *matrix == 0 && C::STATES == 1 {
-                    let first = self.columns.start + unit * C::WIDTH;
-                    let count = C::WIDTH.min(self.columns.end - first);
-                    for i in 0..n {
-                        let start = (index * n + i) * n + first;
-                        let Some(entry) = swept.get(i * self.stride + unit) else { break };
-                        let (Some(to), lanes) = (out.get_mut(start..start + count), entry[0].as_ref()) else { break };
-                        match to.first_chunk_mut::<8>().zip(lanes.first_chunk::<8>()) {
-                            Some((to, lanes)) => *to = *lanes,
-                            None => to.iter_mut().zip(lanes).for_each(|(entry, number)| *entry = *number),
-                        }
-                    }
-                    continue;
-                }
                 let mut starts = [usize::MAX; 8];
                 for lane in 0..C::WIDTH * C::STATES {
                     let row = self.columns.start + unit * C::WIDTH + lane / C::STATES;

@@ -121,7 +121,8 @@ impl LargestLoad {
         sensitivity.pose.remove(index);
         sensitivity.parameters.remove(index);
         let Bounded { output, sign } = bound?;
-        let limit_of = |crane: &LiveCrane| envelope.limits.with_max_efforts(crane).bound(self.limit, crane.description());
+        let limit_of =
+            |crane: &LiveCrane| envelope.limits.with_max_efforts(crane).bound(self.limit, crane.description());
         let limit = limit_of(crane)?;
         let slope = sign * by_load[output] * envelope.factor;
         let correction = -(sign * sensitivity.values[output] - limit) / slope;

@@ -14,9 +14,9 @@ const MOST: usize = 3;
 
 /// What happens when each parameter changes by its whole step, one after the other, that its derivatives do not say.
 #[must_use]
-pub fn cautions(crane: &LiveCrane, sensitivity: &Sensitivity, steps: &[f64], settings: &Settings) -> Vec<String> {
+pub fn cautions(crane: &LiveCrane, found: &Sensitivity, steps: &[f64], settings: &Settings) -> Vec<String> {
     let mut words = Vec::new();
-    for ((index, &parameter), step) in sensitivity.parameters.iter().enumerate().zip(steps) {
+    for ((place, &parameter), step) in found.parameters.iter().enumerate().zip(steps) {
         let info = &crane.description().parameters[parameter];
         let value = crane.parameters()[parameter] + step;
         let with = format!("with {} at {}", label(info), format!("{} {}", short(value), info.unit).trim_end());
@@ -29,7 +29,7 @@ pub fn cautions(crane: &LiveCrane, sensitivity: &Sensitivity, steps: &[f64], set
         }
         match sensitivity(&other, &[], settings) {
             Ok(after) => words.extend(
-                differences(sensitivity, &after, &sensitivity.derivatives[index], *step).map(|what| format!("{with}, {what}")),
+                differences(found, &after, &found.derivatives[place], *step).map(|what| format!("{with}, {what}")),
             ),
             Err(failed) => words.push(format!("{with}: {failed}")),
         }

@@ -51,7 +51,9 @@ fn forces(crane: &mut dyn DynCrane, load: f64) -> Option<Vec<f64>> {
     crane.set_parameter(0, load).unwrap();
     let equilibrium = crane.equilibrium(&Settings::default());
     let rest = vec![0.0; equilibrium.q.len()];
-    equilibrium.is_stable().then(|| crane.support_reactions_at(&equilibrium.q, &rest).iter().map(|force| force.z).collect())
+    equilibrium
+        .is_stable()
+        .then(|| crane.support_reactions_at(&equilibrium.q, &rest).iter().map(|force| force.z).collect())
 }
 
 /// Where a property of loads changes, by bisection.
@@ -267,7 +269,8 @@ fn a_crane_on_two_feet_and_a_rope_has_tipped() {
         let equilibrium = crane.equilibrium(&Settings::default());
         assert!(equilibrium.is_stable(), "{payload}: {equilibrium}");
         let rest = vec![0.0; equilibrium.q.len()];
-        let forces = crane.support_reactions_at(&equilibrium.q, &rest).iter().map(|force| force.z > 0.0).collect::<Vec<_>>();
+        let forces =
+            crane.support_reactions_at(&equilibrium.q, &rest).iter().map(|force| force.z > 0.0).collect::<Vec<_>>();
         assert_eq!(forces, [true, true, false, false], "{payload}");
         let lines = lines(crane, 0.0, &equilibrium.q, &rest, &rest);
         let line = governing(&lines).unwrap();

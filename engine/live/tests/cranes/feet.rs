@@ -239,7 +239,8 @@ fn a_truck_that_tips_names_the_moments_and_the_links() {
     let load = 2.0 * TIPPING;
     crane.set_parameter(0, load).unwrap();
     let equilibrium = crane.equilibrium(&Statics::default());
-    let Diagnosis::Overturned { feet, line, most: [Some(worst), Some(best)] } = Diagnosis::new(crane, &equilibrium) else {
+    let Diagnosis::Overturned { feet, line, most: [Some(worst), Some(best)] } = Diagnosis::new(crane, &equilibrium)
+    else {
         panic!("{equilibrium}");
     };
     assert_eq!(feet.each_ref().map(crane_model::Text::as_str), ["near_rear", "near_front"]);
@@ -331,7 +332,11 @@ fn an_equilibrium_that_rounding_hides_is_none() {
         let changed = LiveCrane::from_spec(&open.changed(&changes)).expect("valid");
         let crane: &dyn DynCrane = &changed;
         let equilibrium = crane.equilibrium(&Statics::default());
-        assert_eq!((equilibrium.status == Status::NotConverged, equilibrium.is_stable()), (hidden, !hidden), "{far:e}: {equilibrium}");
+        assert_eq!(
+            (equilibrium.status == Status::NotConverged, equilibrium.is_stable()),
+            (hidden, !hidden),
+            "{far:e}: {equilibrium}"
+        );
         assert!(hidden || equilibrium.residual() < 1e-8);
         if hidden {
             let why = Diagnosis::new(crane, &equilibrium);

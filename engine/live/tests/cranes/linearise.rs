@@ -110,11 +110,11 @@ fn a_pendulum_on_a_turning_shaft() {
         let shaft = Held { coordinate: 0, position: None, rate: RATE };
         let held: &[Held] = if drive.is_empty() { &[shaft] } else { &[] };
         // Hanging straight down is a steady motion, too: the search begins nearer to this one.
-        let steady = steady(&crane, 0.0, &[0.0, 1.0], held).unwrap();
-        assert!((steady.q[1].abs() - angle).abs() < 1e-12, "{} instead of {angle}", steady.q[1]);
+        let found = steady(&crane, 0.0, &[0.0, 1.0], held).unwrap();
+        assert!((found.q[1].abs() - angle).abs() < 1e-12, "{} instead of {angle}", found.q[1]);
         // Nothing depends on the shaft's angle, and nothing has to turn it.
-        assert!(steady.drift < 1e-9 && steady.efforts[0].abs() < 1e-9, "{steady:?}");
-        let motions = SmallMotions::about_motion(&crane, 0.0, [&steady.q, &steady.v, &[0.0; 2]]);
+        assert!(found.drift < 1e-9 && found.efforts[0].abs() < 1e-9, "{found:?}");
+        let motions = SmallMotions::about_motion(&crane, 0.0, [&found.q, &found.v, &[0.0; 2]]);
         let modes = damped(&motions).unwrap();
         let fastest = modes.last().unwrap().eigenvalue;
         // The shaft's own inertia is 1e-12 of the mass's; a double eigenvalue 0 splits by √ε.
@@ -130,8 +130,8 @@ fn a_pendulum_on_a_fast_shaft_does_not_hang() {
         let crane = spherical_pendulum(&format!(
             "drives:\n- {{coordinate: shaft_psi, rigid: true, motion: {{speed: {{rate: {rate}}}}}}}\n"
         ));
-        let steady = steady(&crane, 0.0, &[0.0, 0.0], &[]).unwrap();
-        let modes = damped(&SmallMotions::about_motion(&crane, 0.0, [&steady.q, &steady.v, &[0.0; 2]])).unwrap();
+        let found = steady(&crane, 0.0, &[0.0, 0.0], &[]).unwrap();
+        let modes = damped(&SmallMotions::about_motion(&crane, 0.0, [&found.q, &found.v, &[0.0; 2]])).unwrap();
         let square = rate * rate - natural * natural;
         let expected = Complex::from(square).sqrt();
         let off = modes.iter().map(|mode| (mode.eigenvalue - expected).norm()).fold(f64::INFINITY, f64::min);
@@ -158,8 +158,8 @@ fn a_mass_on_a_turning_disc() {
             spring("slide_x"),
             spring("mass_y")
         ));
-        let steady = steady(&crane, 0.0, &[0.0; 3], &[]).unwrap();
-        let motions = SmallMotions::about_motion(&crane, 0.0, [&steady.q, &steady.v, &[0.0; 3]]);
+        let found = steady(&crane, 0.0, &[0.0; 3], &[]).unwrap();
+        let motions = SmallMotions::about_motion(&crane, 0.0, [&found.q, &found.v, &[0.0; 3]]);
         // Twice the angular velocity times the mass, and nothing else, is gyroscopic.
         assert!((motions.gyroscopic()[(1, 0)] - 2.0 * mass * rate).abs() < 1e-12);
         let modes = damped_with_shapes(&motions).unwrap();
@@ -193,11 +193,11 @@ fn a_hanging_load_is_flung_outward() {
     );
     // In the middle the motion has the constant rate 4/(10 · 0.75).
     let rate = 4.0 / 7.5;
-    let steady = steady(&crane, 5.0, &[0.0, 0.0], &[]).unwrap();
-    assert!((steady.v[0] - rate).abs() < 1e-12 && (steady.q[0] - 2.0).abs() < 1e-12, "{steady:?}");
-    let outward = -steady.q[1];
+    let found = steady(&crane, 5.0, &[0.0, 0.0], &[]).unwrap();
+    assert!((found.v[0] - rate).abs() < 1e-12 && (found.q[0] - 2.0).abs() < 1e-12, "{found:?}");
+    let outward = -found.q[1];
     assert!((outward.tan() - rate * rate * (6.0 + 3.0 * outward.sin()) / GRAVITY).abs() < 1e-12, "{outward}");
-    assert!(steady.drift < 1e-9, "{steady:?}");
+    assert!(found.drift < 1e-9, "{found:?}");
     // While the drive speeds up, the motion is not steady; held at another angle, it requires the effort of the drive's spring.
     let held = [Held { coordinate: 0, position: Some(2.001), rate }];
     let effort = steady(&crane, 5.0, &[0.0, 0.0], &held).unwrap().efforts[0];
@@ -216,12 +216,12 @@ fn a_steady_motion_may_begin_at_the_moment() {
         ));
         steady(&crane, 0.0, &[0.0, 0.0], &[]).unwrap()
     };
-    let steady = at_start("speed: {rate: 0.5, begin: 0}");
+    let found = at_start("speed: {rate: 0.5, begin: 0}");
     // Rates of 0.5 differ by rounding, over 1e-4 s.
-    assert!((steady.v[0] - 0.5).abs() < 1e-15 && steady.acceleration < 1e-11 && steady.drift < 1e-9, "{steady:?}");
+    assert!((found.v[0] - 0.5).abs() < 1e-15 && found.acceleration < 1e-11 && found.drift < 1e-9, "{found:?}");
     // (6/10²) 4 (1 − 2τ) at τ = 0, to first order in 1e-4 s.
-    let steady = at_start("cubic: {from: 0, to: 4, duration: 10}");
-    assert!((steady.acceleration - 0.24).abs() < 1e-4, "{steady:?}");
+    let found = at_start("cubic: {from: 0, to: 4, duration: 10}");
+    assert!((found.acceleration - 0.24).abs() < 1e-4, "{found:?}");
 }
 
 /// Nothing constrains the wheel, so there is nothing to find, and the search says how far it came and what is loose; nor does it where a spring

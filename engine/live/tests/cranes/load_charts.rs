@@ -516,7 +516,11 @@ fn what_stands_on_its_head_is_followed_from_the_beginning() {
     let search = statics::RestSearch { crane: &crane, positions: &[PI] };
     assert!(!search.find_from_guess().is_stable());
     let equilibrium = search.find(None);
-    assert!(equilibrium.is_stable() && ((equilibrium.q[0] + equilibrium.q[1]).sin() + 1.0).abs() < 1e-12, "{:?}", equilibrium.q);
+    assert!(
+        equilibrium.is_stable() && ((equilibrium.q[0] + equilibrium.q[1]).sin() + 1.0).abs() < 1e-12,
+        "{:?}",
+        equilibrium.q
+    );
 }
 
 /// A load on two slanting springs of height h, which snaps through where `P = 2 k (ℓ₀ − ℓ) z/ℓ + c (h − z)` is greatest: it rests below with any load beyond, but its path

@@ -40,8 +40,8 @@ fn all(crane: &LiveCrane, frequencies: usize) -> Sensitivity {
 fn values_at(crane: &LiveCrane, parameter: usize, value: f64, frequencies: usize) -> (Vec<f64>, Vec<String>) {
     let mut other = crane.clone();
     other.set_parameter(parameter, value).unwrap();
-    let sensitivity = sensitivity(&other, &[], &Settings { frequencies }).unwrap_or_else(|failed| panic!("{failed}"));
-    (sensitivity.values, sensitivity.outputs.into_iter().map(|output| output.place).collect())
+    let found = sensitivity(&other, &[], &Settings { frequencies }).unwrap_or_else(|failed| panic!("{failed}"));
+    (found.values, found.outputs.into_iter().map(|output| output.place).collect())
 }
 
 /// Step of differences relative to the parameter. Extrapolated to step 0 they have an error of its sixth power, 1e-12 here, times how fast
@@ -53,10 +53,10 @@ const ROUNDING: f64 = 1e-8;
 /// Compares all derivatives of a crane with central differences of its equilibria, to a fraction of the derivative plus a tenth of what
 /// changes the value by as much as the parameter.
 fn assert_derivatives(what: &str, crane: &LiveCrane, frequencies: usize, tolerance: f64) {
-    let sensitivity = all(crane, frequencies);
-    assert!(sensitivity.outputs.len() > 3, "{what}: {:?}", sensitivity.notes);
+    let found = all(crane, frequencies);
+    assert!(found.outputs.len() > 3, "{what}: {:?}", found.notes);
     let mut compared = 0;
-    for (place, &parameter) in sensitivity.parameters.iter().enumerate() {
+    for (place, &parameter) in found.parameters.iter().enumerate() {
         let value = crane.parameters()[parameter];
         let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
         let (slopes, places): (Vec<_>, Vec<_>) = [1.0, 0.5, 0.25]
@@ -69,26 +69,26 @@ fn assert_derivatives(what: &str, crane: &LiveCrane, frequencies: usize, toleran
             })
             .into_iter()
             .unzip();
-        for (index, output) in sensitivity.outputs.iter().enumerate() {
+        for (index, output) in found.outputs.iter().enumerate() {
             if !places[0][index] && output.group != Group::Frequencies {
                 continue;
             }
             let [long, short, shortest] = [0, 1, 2].map(|k: usize| slopes[k][index]);
             let [first, second] = [(4.0 * short - long) / 3.0, (4.0 * shortest - short) / 3.0];
             let expected = (16.0 * second - first) / 15.0;
-            let own = sensitivity.derivatives[place][index];
+            let own = found.derivatives[place][index];
             compared += 1;
-            let of_value = sensitivity.values[index].abs() * STEP / step;
+            let of_value = found.values[index].abs() * STEP / step;
             let name = &crane.description().parameters[parameter].name;
             assert!(
                 (own - expected).abs() <= tolerance * (expected.abs() + 0.1 * of_value) + ROUNDING * STEP / step,
                 "{what}: {} by {name}: {own:.9e} for {expected:.9e}, of {:.6e}; {long} {short} {shortest}",
                 output.name,
-                sensitivity.values[index],
+                found.values[index],
             );
         }
     }
-    assert!(compared >= sensitivity.outputs.len(), "{what}: {compared}");
+    assert!(compared >= found.outputs.len(), "{what}: {compared}");
 }
 
 /// Fractions of differences: see [`STEP`].
@@ -147,11 +147,11 @@ fn outputs_have_the_values_of_the_runtime() {
         ["eight_link_flexible", "eight_link_hydraulic", "loader_tipping", "two_arms", "examples/parallel_harvester"]
     {
         let live = shipped(name, "");
-        let (sensitivity, crane): (_, &dyn DynCrane) = (all(&live, 3), &live);
-        let (description, q, rest) = (crane.description(), &sensitivity.q, vec![0.0; sensitivity.q.len()]);
+        let (found, crane): (_, &dyn DynCrane) = (all(&live, 3), &live);
+        let (description, q, rest) = (crane.description(), &found.q, vec![0.0; found.q.len()]);
         let mut expected: Vec<(String, f64)> = Vec::new();
-        for (point, position) in description.points.iter().zip(crane.points_at(q)) {
-            expected.extend(["x", "y", "z"].iter().zip(&position).map(|(axis, x)| (format!("{point}_{axis}"), *x)));
+        for (point, place) in description.points.iter().zip(crane.points_at(q)) {
+            expected.extend(["x", "y", "z"].iter().zip(&place).map(|(axis, x)| (format!("{point}_{axis}"), *x)));
         }
         for (support, force) in description.supports.iter().zip(crane.support_reactions_at(q, &rest)) {
             expected.push((format!("{}_reaction_z", support.name), force.z));
@@ -175,7 +175,7 @@ fn outputs_have_the_values_of_the_runtime() {
         expected.extend(frequencies.map(|(k, mode)| (format!("frequency_{}", k + 1), mode.frequency().unwrap())));
         for (output, expected) in expected {
             let own =
-                sensitivity.values[sensitivity.index_of(&output).unwrap_or_else(|| panic!("{name}: {output}, {:?}", sensitivity.notes))];
+                found.values[found.index_of(&output).unwrap_or_else(|| panic!("{name}: {output}, {:?}", found.notes))];
             // The same formulas on the same pose: rounding, of pressures and margins that of larger numbers.
             assert!((own - expected).abs() <= 1e-9 * expected.abs().max(1.0), "{name}: {output}: {own} for {expected}");
         }
@@ -191,22 +191,22 @@ fn a_cantilever_has_the_derivatives_of_its_formula() {
          links:\n  - {name: beam, beam: {length: length, sections: 8, material: {E: young, G: 8e14, density: 0.1}, section: {circle: {diameter: \
          0.1}}}}\n  - {name: weight, mass: mass, com: [0, 0, 0]}\npoints: [{name: tip, link: weight, at: [0, 0, 0]}]\n",
     );
-    let sensitivity = all(&crane, 2);
+    let found = all(&crane, 2);
     let (e, m, l, n) = (2.1e15, 20.0, 2.0_f64, 8.0);
     let inertia = std::f64::consts::PI * 0.05_f64.powi(4) / 4.0;
     let sag = -m * 9.81 * l.powi(3) / (3.0 * e * inertia) * (1.0 - 1.0 / (4.0 * n * n));
-    let z = sensitivity.index_of("tip_z").unwrap();
-    let first = sensitivity.index_of("frequency_1").unwrap();
-    let frequency = sensitivity.values[first];
+    let z = found.index_of("tip_z").unwrap();
+    let first = found.index_of("frequency_1").unwrap();
+    let frequency = found.values[first];
     let relative = [[-1.0 / e, 1.0 / m, 3.0 / l], [0.5 / e, -0.5 / m, -1.5 / l]];
     for (parameter, [of_sag, of_frequency]) in (0..3).map(|k| (k, [relative[0][k], relative[1][k]])) {
         for (output, expected) in [(z, sag * of_sag), (first, frequency * of_frequency)] {
-            let own = sensitivity.derivatives[parameter][output];
+            let own = found.derivatives[parameter][output];
             // The beam weighs 8e-5 of the mass at its end.
             assert!((own - expected).abs() <= 1e-4 * expected.abs(), "{parameter}, {output}: {own:e} for {expected:e}");
         }
     }
-    assert!((sensitivity.values[z] - sag).abs() < 1e-4 * sag.abs());
+    assert!((found.values[z] - sag).abs() < 1e-4 * sag.abs());
 }
 
 /// A round beam hanging along gravity vibrates alike in both planes, until a parameter makes the mass at its end differ: then only one of the
@@ -218,15 +218,15 @@ fn frequencies_that_coincide_part_in_order() {
          links:\n  - {name: beam, beam: {length: 2, sections: 4, material: {E: young, G: 8e10, density: 7850}, section: {circle: {diameter: \
          0.1}}}}\n  - {name: weight, mass: 20, com: [0, 0, 0], inertia: {Ixx: 3, Iyy: 3, Izz: turn}}\n",
     );
-    let sensitivity = all(&crane, 2);
-    assert!(sensitivity.notes.iter().any(|note| note.starts_with("frequencies 1 to 2 coincide")), "{:?}", sensitivity.notes);
-    let [first, second] = ["frequency_1", "frequency_2"].map(|name| sensitivity.index_of(name).unwrap());
-    let [by_young, by_turn] = [&sensitivity.derivatives[0], &sensitivity.derivatives[1]];
+    let found = all(&crane, 2);
+    assert!(found.notes.iter().any(|note| note.starts_with("frequencies 1 to 2 coincide")), "{:?}", found.notes);
+    let [first, second] = ["frequency_1", "frequency_2"].map(|name| found.index_of(name).unwrap());
+    let [by_young, by_turn] = [&found.derivatives[0], &found.derivatives[1]];
     // Both rise with E alike, to the rounding of modes that coincide.
     assert!((by_young[first] - by_young[second]).abs() < 1e-6 * by_young[first], "{by_young:?}");
     let step = 1e-3;
     let (after, _) = values_at(&crane, 1, 3.0 + step, 2);
-    let expected = (after[first] - sensitivity.values[first]) / step;
+    let expected = (after[first] - found.values[first]) / step;
     // The error of a forward difference: half of its step times the curvature, here 1e-4 of the slope.
     assert!((by_turn[first] - expected).abs() < 1e-3 * expected.abs(), "{} for {expected}", by_turn[first]);
     assert!(expected < 0.0 && by_turn[second].abs() < 1e-6 * expected.abs(), "{by_turn:?}");
@@ -257,13 +257,13 @@ fn differences_of_fixed_numbers_are_the_derivatives() {
     let crane = live(&source);
     let number = FixedNumber::new(&checked(&source), place).unwrap();
     assert_eq!((number.value, number.unit.as_str()), (0.26, "m"));
-    let sensitivity = sensitivity(&crane, &[], &settings).unwrap();
-    let differences = number.differentiate(&crane, &sensitivity, &settings).unwrap();
-    for (index, output) in sensitivity.outputs.iter().enumerate() {
+    let found = sensitivity(&crane, &[], &settings).unwrap();
+    let differences = number.differentiate(&crane, &found, &settings).unwrap();
+    for (index, output) in found.outputs.iter().enumerate() {
         let (own, expected, error) =
             (differences.derivatives[index], exact.derivatives[0][index], differences.errors[index]);
         // Poses that are exact to 1e-13 over a step of 1e-3, relative to what changes the value as much as the number.
-        let rounding = 1e-8 * (sensitivity.values[index].abs() + 1.0) / number.value;
+        let rounding = 1e-8 * (found.values[index].abs() + 1.0) / number.value;
         assert!((own - expected).abs() <= error + rounding, "{}: {own} for {expected} ± {error}", output.name);
         // The error of the shorter step, of the square: 1e-6 times how fast the derivative changes.
         assert!(error <= 1e-4 * expected.abs() + rounding, "{}: {error} of {expected}", output.name);
@@ -284,15 +284,15 @@ fn a_part_of_a_beam_becomes_longer_with_the_beam() {
     let mut names = [place.to_owned()];
     assert!(with_live_numbers(&checked(&with_parts), &mut names).unwrap().is_none() && names[0] == place);
     let number = FixedNumber::new(&checked(&with_parts), place).unwrap();
-    let sensitivity = sensitivity(&live(&with_parts), &[], &settings).unwrap();
-    let own = number.differentiate(&live(&with_parts), &sensitivity, &settings).unwrap();
+    let found = sensitivity(&live(&with_parts), &[], &settings).unwrap();
+    let own = number.differentiate(&live(&with_parts), &found, &settings).unwrap();
     let mut names = ["links.boom.beam.length".to_owned()];
     let whole = LiveCrane::new(with_live_numbers(&checked(&source), &mut names).unwrap().unwrap().chain);
     let parameter = whole.description().parameters.iter().position(|info| info.name == *names[0]).unwrap();
     let whole = sensitivity(&whole, &[parameter], &settings).unwrap();
     for name in ["log_centre_x", "log_centre_z", "boom_psi_drive_torque", "frequency_3", "tipping_margin"] {
         let expected = whole.derivatives[0][whole.index_of(name).unwrap()];
-        let own = own.derivatives[sensitivity.index_of(name).unwrap()];
+        let own = own.derivatives[found.index_of(name).unwrap()];
         // Where the parts meet an element has two pieces: its integrals have other roundings, over a step of 1e-3.
         assert!((own - expected).abs() < 1e-6 * expected.abs(), "{name}: {own} for {expected}");
     }
@@ -319,21 +319,21 @@ fn numbers_without_derivatives_are_refused() {
 #[test]
 fn a_parameter_that_is_given_twice_has_its_derivatives_twice() {
     let crane = shipped("knuckle_boom", "");
-    let sensitivity = sensitivity(&crane, &[0, 0], &Settings::default()).unwrap();
-    assert_eq!(sensitivity.derivatives[0], sensitivity.derivatives[1]);
-    assert_eq!(sensitivity.pose[0], sensitivity.pose[1]);
+    let found = sensitivity(&crane, &[0, 0], &Settings::default()).unwrap();
+    assert_eq!(found.derivatives[0], found.derivatives[1]);
+    assert_eq!(found.pose[0], found.pose[1]);
 }
 
 /// The largest load within limits, and its derivatives by parameters of these names.
-fn largest_load(crane: &LiveCrane, envelope: &Envelope, parameters: &[usize]) -> (LargestLoad, Sensitivity) {
-    let largest = LargestLoad::new(crane, envelope).unwrap_or_else(|none| panic!("{none:?}"));
+fn largest_load(crane: &LiveCrane, asked: &Envelope, parameters: &[usize]) -> (LargestLoad, Sensitivity) {
+    let largest = LargestLoad::new(crane, asked).unwrap_or_else(|none| panic!("{none:?}"));
     let mut loaded = crane.clone();
-    loaded.set_parameter(envelope.load, envelope.factor * largest.load).unwrap();
-    let all: Vec<usize> = parameters.iter().copied().chain([envelope.load]).collect();
+    loaded.set_parameter(asked.load, asked.factor * largest.load).unwrap();
+    let all: Vec<usize> = parameters.iter().copied().chain([asked.load]).collect();
     let settings = Settings { frequencies: 0 };
-    let mut sensitivity = sensitivity_near(&loaded, &all, &settings, &largest.condition.q).unwrap();
-    largest.add_to(&mut sensitivity, &loaded, envelope, parameters.len(), &[]).unwrap_or_else(|| panic!("{:?}", largest.limit));
-    (largest, sensitivity)
+    let mut found = sensitivity_near(&loaded, &all, &settings, &largest.condition.q).unwrap();
+    largest.add_to(&mut found, &loaded, asked, parameters.len(), &[]).unwrap_or_else(|| panic!("{:?}", largest.limit));
+    (largest, found)
 }
 
 /// Derivatives of the largest load against those of charts that were computed with changed numbers.
@@ -342,14 +342,14 @@ fn assert_largest_load(what: &str, crane: &LiveCrane, load: &str, limits: Limits
     let index = |name: &str| description.parameters.iter().position(|info| info.name == name).unwrap();
     let load = index(load);
     let loads = range_of_loads(crane, load, None);
-    let envelope = Envelope { axes: Axes::default(), load, loads, limits, factor: 1.25 };
+    let asked = Envelope { axes: Axes::default(), load, loads, limits, factor: 1.25 };
     let parameters: Vec<usize> = (0..description.parameters.len()).filter(|&index| index != load).collect();
     assert!(parameters.len() > 1, "{what}");
-    let (largest, sensitivity) = largest_load(crane, &envelope, &parameters);
+    let (largest, found) = largest_load(crane, &asked, &parameters);
     assert!(is_expected(largest.limit), "{what}: {:?}", largest.limit);
-    let output = sensitivity.index_of("largest_load").unwrap();
+    let output = found.index_of("largest_load").unwrap();
     // A chart is exact to 1e-6, and stays below.
-    let own = sensitivity.values[output];
+    let own = found.values[output];
     assert!((own - largest.load).abs() <= 2e-6 * own, "{what}: {own} for {}", largest.load);
     for (place, &parameter) in parameters.iter().enumerate() {
         let value = crane.parameters()[parameter];
@@ -357,11 +357,11 @@ fn assert_largest_load(what: &str, crane: &LiveCrane, load: &str, limits: Limits
         let at = |step: f64| {
             let mut other = crane.clone();
             other.set_parameter(parameter, value + step).unwrap();
-            let (_, sensitivity) = largest_load(&other, &envelope, &[]);
-            sensitivity.values[sensitivity.index_of("largest_load").unwrap()]
+            let (_, found) = largest_load(&other, &asked, &[]);
+            found.values[found.index_of("largest_load").unwrap()]
         };
         let expected = (at(step) - at(-step)) / (2.0 * step);
-        let derivative = sensitivity.derivatives[place][output];
+        let derivative = found.derivatives[place][output];
         let name = &description.parameters[parameter].name;
         // Differences have an error of the square of their step, 1e-6, times how fast the derivative changes.
         let allowed = 1e-4 * (expected.abs() + 0.1 * own / value.abs());
@@ -414,13 +414,13 @@ fn the_largest_pull_changes_with_friction_and_mass() {
          loads: [{{name: rope, link: block, at: [0, 0, 0], force: [1, 0, 0], scale: {{hold: pull}}}}]\n"
     ));
     let sliding = Limits { of_parts: vec![PartLimit::Sliding], ..Limits::none(crane.description()) };
-    let envelope = Envelope { axes: Axes::default(), load: 0, loads: [0.0, 1e4], limits: sliding, factor: 1.0 };
-    let (largest, sensitivity) = largest_load(&crane, &envelope, &[1, 2]);
+    let asked = Envelope { axes: Axes::default(), load: 0, loads: [0.0, 1e4], limits: sliding, factor: 1.0 };
+    let (largest, found) = largest_load(&crane, &asked, &[1, 2]);
     assert!(matches!(largest.limit, Limit::Sliding { .. }), "{:?}", largest.limit);
-    let output = sensitivity.index_of("largest_load").unwrap();
-    let derivatives: Vec<f64> = sensitivity.derivatives.iter().map(|derivatives| derivatives[output]).collect();
+    let output = found.index_of("largest_load").unwrap();
+    let derivatives: Vec<f64> = found.derivatives.iter().map(|derivatives| derivatives[output]).collect();
     // All by hand: μ m g, m g and μ g; the feet press a little more in front, by what the block turns, of which nothing enters the sum.
-    for (number, expected) in [sensitivity.values[output], derivatives[0], derivatives[1]]
+    for (number, expected) in [found.values[output], derivatives[0], derivatives[1]]
         .iter()
         .zip([0.3 * 100.0, 100.0, 0.3].map(|part| part * GRAVITY))
     {
@@ -478,18 +478,18 @@ guess: {load_psi: -20 deg}
             let crane = live(source);
             let limits = Limits { of_parts: vec![part], ..Limits::none(crane.description()) };
             let loads = range_of_loads(&crane, 0, None);
-            let envelope = Envelope { axes: Axes::default(), load: 0, loads, limits, factor: 1.0 };
-            let largest = LargestLoad::new(&crane, &envelope).unwrap_or_else(|none| panic!("{place}: {none:?}"));
+            let asked = Envelope { axes: Axes::default(), load: 0, loads, limits, factor: 1.0 };
+            let largest = LargestLoad::new(&crane, &asked).unwrap_or_else(|none| panic!("{place}: {none:?}"));
             let mut loaded = crane;
             loaded.set_parameter(0, largest.load).unwrap();
             let settings = Settings { frequencies: 0 };
-            let mut sensitivity = sensitivity_near(&loaded, &[0], &settings, &largest.condition.q).unwrap();
+            let mut found = sensitivity_near(&loaded, &[0], &settings, &largest.condition.q).unwrap();
             for number in fixed {
-                sensitivity.derivatives.push(number.differentiate(&loaded, &sensitivity, &settings).unwrap().derivatives);
+                found.derivatives.push(number.differentiate(&loaded, &found, &settings).unwrap().derivatives);
             }
-            largest.add_to(&mut sensitivity, &loaded, &envelope, 0, fixed).unwrap_or_else(|| panic!("{:?}", largest.limit));
-            let output = sensitivity.index_of("largest_load").unwrap();
-            (sensitivity.values[output], sensitivity.derivatives.first().map(|derivatives| derivatives[output]))
+            largest.add_to(&mut found, &loaded, &asked, 0, fixed).unwrap_or_else(|| panic!("{:?}", largest.limit));
+            let output = found.index_of("largest_load").unwrap();
+            (found.values[output], found.derivatives.first().map(|derivatives| derivatives[output]))
         };
         let number = FixedNumber::new(&checked(&source), place).unwrap();
         let (load, derivative) = largest(&source, &[number]);

@@ -47,11 +47,11 @@ fn a_block_stands_up_to_the_angle_of_friction() {
         for (share, stands) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
             let block = block((share * FRICTION).atan(), stiffness, 1e3, "");
             let crane: &dyn DynCrane = &block;
-            let equilibrium = crane.equilibrium(&Statics::default());
-            assert_eq!(equilibrium.is_stable(), stands, "{stiffness:e}, {share}: {equilibrium}");
+            let found = crane.equilibrium(&Statics::default());
+            assert_eq!(found.is_stable(), stands, "{stiffness:e}, {share}: {found}");
             if !stands {
-                assert!(matches!(equilibrium.status, Status::Slides { .. }), "{equilibrium}");
-                assert!(matches!(Diagnosis::new(crane, &equilibrium), Diagnosis::Slides { .. }));
+                assert!(matches!(found.status, Status::Slides { .. }), "{found}");
+                assert!(matches!(Diagnosis::new(crane, &found), Diagnosis::Slides { .. }));
             }
         }
     }
@@ -87,15 +87,15 @@ fn a_block_slides_as_coulomb_says() {
         let start = Start::given(InitialState { v: q.clone(), q, x: Vec::new() });
         let table = run(&block, method, tolerance, &start);
         let change = |name: &str| value(&table, name, 2.0) - value(&table, name, 1.0);
-        let value = change("block_x_rate");
-        assert!((value / expected - 1.0).abs() < 1e-6, "{method:?}: {value} m/s² for {expected}");
+        let found = change("block_x_rate");
+        assert!((found / expected - 1.0).abs() < 1e-6, "{method:?}: {found} m/s² for {expected}");
         if damping == 0.0 {
             // Its springs follow within 1 ms, and store more the faster it slides.
             continue;
         }
         let lost = FRICTION * MASS * GRAVITY * slope.cos() * change("block_x");
-        let value = change("dissipated_energy");
-        assert!((value / lost - 1.0).abs() < 1e-5, "{method:?}: {value} J for {lost}");
+        let found = change("dissipated_energy");
+        assert!((found / lost - 1.0).abs() < 1e-5, "{method:?}: {found} J for {lost}");
         // Each foot is where the block is, except for the elongation of its spring.
         let slid = value(&table, "a_slid_x", 2.0) - value(&table, "block_x", 2.0);
         assert!(slid.abs() < 1e-2, "{method:?}: {slid} m");

@@ -74,7 +74,8 @@ fn loaded(kinematics: &'static str, stiffness: f64, share: f64) -> Case {
         let load = share * tipping();
         let subject = Subject::new(&truck(kinematics, stiffness, 0.0, [0.0; 4]))?.set("load", load)?;
         let equilibrium = subject.equilibrium();
-        let carried: f64 = subject.crane.support_reactions_at(&equilibrium.q, &[0.0; 6]).iter().map(|force| force.z).sum();
+        let carried: f64 =
+            subject.crane.support_reactions_at(&equilibrium.q, &[0.0; 6]).iter().map(|force| force.z).sum();
         let right = match &equilibrium.status {
             Status::Converged => stands && (carried / (GRAVITY * (TRUCK + load)) - 1.0).abs() < 1e-6,
             Status::TipsOver { feet } => !stands && feet.join(" ") == "s3 s0",

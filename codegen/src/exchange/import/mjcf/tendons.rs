@@ -61,7 +61,8 @@ impl<'a, 'i> File<'a, 'i> {
         let mut number = |key| self.number(node, None, key, &owner).unwrap_or(0.0);
         let [stiffness, damping] = ["stiffness", "damping"].map(&mut number);
         let rest = self.classes.find(node, None, "springlength");
-        let rest = rest.and_then(|attribute| self.reader.some_numbers(attribute, &format!("`springlength` of {owner}")));
+        let rest =
+            rest.and_then(|attribute| self.reader.some_numbers(attribute, &format!("`springlength` of {owner}")));
         let lost = ["frictionloss", "armature"]
             .into_iter()
             .filter(|key| self.classes.text(node, None, key).is_some_and(|text| text.parse() != Ok(0.0)));

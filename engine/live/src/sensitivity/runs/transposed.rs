@@ -149,10 +149,13 @@ impl PullBacks for Transposed<'_> {
         let crane = directions.crane();
         let (Some(states), Some(jacobians)) = (&mut self.cylinder_states, &mut self.cylinder_jacobians) else { return };
         let state = ProductState { t: at.t, q: at.q, v: at.v, a: at.a };
-        let of_states: Vec<f64> =
-            weights.iter().flat_map(|cylinder_slopes| [cylinder_slopes.length_and_rate[0], cylinder_slopes.length_and_rate[1], 0.0]).collect();
+        let of_states: Vec<f64> = weights
+            .iter()
+            .flat_map(|cylinder_slopes| [cylinder_slopes.length_and_rate[0], cylinder_slopes.length_and_rate[1], 0.0])
+            .collect();
         places.add(&states.at(&state, &of_states), sum);
-        let of_jacobians: Vec<f64> = weights.iter().flat_map(|cylinder_slopes| cylinder_slopes.jacobian.iter().copied()).collect();
+        let of_jacobians: Vec<f64> =
+            weights.iter().flat_map(|cylinder_slopes| cylinder_slopes.jacobian.iter().copied()).collect();
         places.add(&jacobians.at(&state, &of_jacobians), sum);
         if !directions.may_change_servos() {
             return;
@@ -170,7 +173,10 @@ impl PullBacks for Transposed<'_> {
         for (cylinder_slopes, cylinder) in weights.iter().zip(&*description.cylinders) {
             of_openings[cylinder.drive][0] += cylinder_slopes.opening;
         }
-        let of_wanted: Vec<f64> = weights.iter().flat_map(|cylinder_slopes| [cylinder_slopes.wanted[0], cylinder_slopes.wanted[1], 0.0]).collect();
+        let of_wanted: Vec<f64> = weights
+            .iter()
+            .flat_map(|cylinder_slopes| [cylinder_slopes.wanted[0], cylinder_slopes.wanted[1], 0.0])
+            .collect();
         let pulled = states.at(&ProductState { q: &wanted[0], v: &wanted[1], ..state }, &of_wanted);
         places.add_numbers(&pulled, sum);
         for cylinder in driven() {
