@@ -230,7 +230,7 @@ fn axes_shape(envelope: &Envelope) -> Vec<usize> {
     envelope.axes.0.iter().map(|axis| axis.values.len()).collect()
 }
 
-/// Whether the values of an axis, or positions at which a drive is held, are finite and plausible; `given`: what they were given as.
+/// Whether the values of an axis, or positions at which a drive is held, are finite and plausible; `text`: what they were given as.
 pub fn check_axis(axis: &Axis, text: &str, description: &Description) -> PyResult<()> {
     let wrong = |told: String| Err(PyValueError::new_err(format!("{text}{told}")));
     if axis.values.is_empty() || axis.values.iter().any(|value| !value.is_finite()) {

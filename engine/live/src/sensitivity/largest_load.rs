@@ -104,7 +104,7 @@ impl LargestLoad {
         words(self.limit, crane)
     }
 
-    /// Adds the load to the outputs of the crane that carries it. `place`: the list of derivatives by the load, which is removed; `fixed`: the
+    /// Adds the load to the outputs of the crane that carries it. `index`: of the list of derivatives by the load, which is removed; `fixed`: the
     /// numbers of the lists after it.
     ///
     /// `None` where no output is at its bound, so that the load has no exact derivatives; nothing is changed then except that list.
@@ -170,7 +170,7 @@ impl LargestLoad {
     }
 
     /// What happens to the load when each number changes by its whole step, one after the other, that its derivatives do not say. `crane`: with
-    /// its own load; `found`: with the output.
+    /// its own load; `sensitivity`: with the output.
     #[must_use]
     pub fn cautions(
         &self,
