@@ -291,7 +291,7 @@ fn likely_slip(mass: f64, com: [f64; 3], written: [f64; 6], about: About) -> Opt
 }
 
 /// A number as a person would write it, to six digits.
-fn rounded(number: f64) -> String {
+pub(super) fn rounded(number: f64) -> String {
     let number: f64 = format!("{number:.5e}").parse().unwrap_or(number);
     let plain = number == 0.0 || (1e-4..1e7).contains(&number.abs());
     if plain { number.to_string() } else { format!("{number:e}") }

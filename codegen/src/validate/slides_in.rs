@@ -1,5 +1,6 @@
 //! Telescopes: beams that slide in beams on two pads.
 
+use super::inertias::rounded;
 use super::on::Attached;
 use super::{Check, LinkBodies, Owner};
 use crate::chain::{
@@ -174,7 +175,7 @@ impl<'a> Check<'a> {
     /// The overlap is within both beams.
     fn keep_overlap(&mut self, overlap: &Value, beams: [&LinkBodies; 2], name: &str, span: Span) {
         for length in beams.map(LinkBodies::length) {
-            let broken = rule::overlap(span, name, self.now(overlap), self.now(&length));
+            let broken = rule::overlap(span, name, self.now(overlap), rounded(self.now(&length)));
             if self.now(overlap) > (1.0 + WRITTEN) * self.now(&length) {
                 self.report(broken);
                 return;

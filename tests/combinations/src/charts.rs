@@ -73,11 +73,21 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let forces = |condition: &Condition| -> Vec<f64> {
         condition.efforts.iter().copied().chain(condition.feet.iter().map(|[force, _]| *force)).collect()
     };
-    let (chart, rest) = (forces(&chart), forces(&rest));
-    let size = rest.iter().fold(1.0, |size: f64, force| size.max(force.abs()));
-    let off = chart.iter().zip(&rest).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    if off > TOLERANCE * size {
-        wrong.push(format!("{}: forces differ by {off:.3e} of {size:.3e}", at(written)));
+    // What joints and sections transmit follows from the pose, wherever the motions of the spec would hold the drives.
+    let transmitted = |crane: &dyn DynCrane, condition: &Condition| -> Vec<f64> {
+        let still = vec![0.0; condition.q.len()];
+        let wrenches = crane.internal_forces_at(0.0, &condition.q, &still, &still);
+        wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flat_map(|of| <[f64; 3]>::from(of)).collect()
+    };
+    for (what, chart, rest) in [
+        ("forces", forces(&chart), forces(&rest)),
+        ("internal forces", transmitted(&crane, &chart), transmitted(&held, &rest)),
+    ] {
+        let size = rest.iter().fold(1.0, |size: f64, force| size.max(force.abs()));
+        let off = chart.iter().zip(&rest).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if off > TOLERANCE * size {
+            wrong.push(format!("{}: {what} differ by {off:.3e} of {size:.3e}", at(written)));
+        }
     }
     Some(wrong)
 }
