@@ -77,7 +77,7 @@ pub fn check_charts(tree: &Tree, seed: u64) -> Option<Vec<String>> {
     let transmitted = |crane: &dyn DynCrane, condition: &Condition| -> Vec<f64> {
         let still = vec![0.0; condition.q.len()];
         let wrenches = crane.internal_forces_at(0.0, &condition.q, &still, &still);
-        wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flat_map(|of| <[f64; 3]>::from(of)).collect()
+        wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flat_map(<[f64; 3]>::from).collect()
     };
     for (what, chart, rest) in [
         ("forces", forces(&chart), forces(&rest)),
