@@ -49,4 +49,29 @@ impl Part {
         }
         false
     }
+
+    /// In a constant: stops the build, with what to add to the spec, unless it is one of the parts of a crane.
+    ///
+    /// # Panics
+    /// If it is not one of them.
+    pub const fn require(self, parts: &[Part]) {
+        if self.is_in(parts) {
+            return;
+        }
+        match self {
+            Part::Common => panic!("the crane has no poses: `PARTS` of every crane contains `Part::Common`"),
+            Part::Dynamics | Part::Systems | Part::StepMatrices => {
+                panic!("the crane has no dynamics: add `dynamics` to `analyses` of its spec")
+            }
+            Part::Statics => panic!("the crane has no statics: add `statics` to `analyses` of its spec"),
+            Part::Modes => panic!("the crane has no modes: add `modes` to `analyses` of its spec"),
+            Part::InternalForces => {
+                panic!("the crane has no internal forces: add `internal_forces` to `analyses` of its spec")
+            }
+            Part::Derivatives => panic!("the crane has no derivatives: add `derivatives` to `analyses` of its spec"),
+            Part::MotionDerivatives => {
+                panic!("the crane has no derivatives of motions: add `motion_derivatives` to `analyses` of its spec")
+            }
+        }
+    }
 }

@@ -31,11 +31,11 @@ impl<'a> Deref for CraneRef<'a> {
 ///
 /// With a crane of a size in its type, a solver whose part the spec's `analyses` left out does not compile.
 pub trait AnyCrane<'a, Size> {
-    /// The same crane on slices, for statics.
-    fn for_statics(self) -> CraneRef<'a>;
+    /// The parts that it is known to have where the solver is compiled; all of a crane of any size, which says itself.
+    const PARTS: &'static [Part];
 
-    /// The same crane on slices, for motion.
-    fn for_dynamics(self) -> CraneRef<'a>;
+    /// The same crane on slices.
+    fn on_slices(self) -> CraneRef<'a>;
 }
 
 /// Cranes with `N` coordinates in their type.
@@ -47,37 +47,25 @@ pub struct OfSize<const N: usize>;
 pub struct AnySize;
 
 impl<'a, const N: usize, C: CraneModel<N>> AnyCrane<'a, OfSize<N>> for &'a C {
-    fn for_statics(self) -> CraneRef<'a> {
-        const {
-            assert!(Part::Statics.is_in(C::PARTS), "the crane has no statics: add `statics` to `analyses` of its spec");
-        }
-        CraneRef::Instance(Box::new(Instance::<N, _>(self.clone())))
-    }
+    const PARTS: &'static [Part] = C::PARTS;
 
-    fn for_dynamics(self) -> CraneRef<'a> {
-        const {
-            assert!(
-                Part::Dynamics.is_in(C::PARTS),
-                "the crane has no dynamics: add `dynamics` to `analyses` of its spec"
-            );
-        }
+    fn on_slices(self) -> CraneRef<'a> {
         CraneRef::Instance(Box::new(Instance::<N, _>(self.clone())))
     }
 }
 
-macro_rules! any_size {
-    ($crane:ty $(, $bound:tt: $of:ident)?) => {
-        impl<'a $(, $bound: $of)?> AnyCrane<'a, AnySize> for $crane {
-            fn for_statics(self) -> CraneRef<'a> {
-                CraneRef::Slices(self)
-            }
+impl<'a, C: DynCrane> AnyCrane<'a, AnySize> for &'a C {
+    const PARTS: &'static [Part] = &Part::ALL;
 
-            fn for_dynamics(self) -> CraneRef<'a> {
-                CraneRef::Slices(self)
-            }
-        }
-    };
+    fn on_slices(self) -> CraneRef<'a> {
+        CraneRef::Slices(self)
+    }
 }
 
-any_size! { &'a C, C: DynCrane }
-any_size! { &'a (dyn DynCrane + 'a) }
+impl<'a> AnyCrane<'a, AnySize> for &'a (dyn DynCrane + 'a) {
+    const PARTS: &'static [Part] = &Part::ALL;
+
+    fn on_slices(self) -> CraneRef<'a> {
+        CraneRef::Slices(self)
+    }
+}

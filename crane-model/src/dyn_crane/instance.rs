@@ -14,8 +14,14 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 pub struct Instance<const N: usize, C>(pub C);
 
-/// A boxed crane with the parameters of its spec.
+/// A boxed crane with the parameters of its spec; it has every analysis but derivatives, which few need.
 pub fn boxed<const N: usize, C: CraneModel<N> + Default>() -> Box<dyn DynCrane> {
+    const {
+        Part::Statics.require(C::PARTS);
+        Part::Dynamics.require(C::PARTS);
+        Part::Modes.require(C::PARTS);
+        Part::InternalForces.require(C::PARTS);
+    }
     Box::new(Instance::<N, _>(C::default()))
 }
 

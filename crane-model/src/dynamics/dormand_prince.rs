@@ -30,7 +30,7 @@ use super::{
     typed,
 };
 use crate::{
-    CraneModel,
+    CraneModel, Part,
     dyn_crane::{DynCrane, Instance},
 };
 
@@ -72,6 +72,7 @@ pub fn step<const N: usize, C: CraneModel<N>>(
     h: f64,
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
+    const { Part::Dynamics.require(C::PARTS) }
     let crane = Instance::<N, _>(crane.clone());
     let mut equations = Equations::new(&crane, References::rigid(&crane));
     typed::step(&mut equations, t, h, state, &mut Tableau::new(2 * N))

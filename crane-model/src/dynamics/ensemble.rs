@@ -17,7 +17,7 @@ use super::{
     stops::Stops,
 };
 use crate::{
-    CoordinateRole, CraneModel, Description, LaneDynamics, ParameterError, StateAt,
+    CoordinateRole, CraneModel, Description, LaneDynamics, ParameterError, Part, StateAt,
     dyn_crane::{Block, DynBlock, DynCrane, Instance},
     force_states::ForceStates,
     loop_joints::Loops,
@@ -101,6 +101,7 @@ impl<const N: usize, C: CraneModel<N>> Members for &[(C, State<N>)] {
     type Refused = Infallible;
 
     fn in_batches(self, run: &mut dyn FnMut(usize, Batch<'_>)) -> Result<(), Infallible> {
+        const { Part::Dynamics.require(C::PARTS) }
         for (index, cranes) in self.chunks(LANES).enumerate() {
             let mut block = Block::<N, _>(C::lanes(std::array::from_fn(|lane| &cranes[lane.min(cranes.len() - 1)].0)));
             let starts: Vec<InitialState> = cranes.iter().map(|(_, start)| start.into()).collect();

@@ -36,7 +36,7 @@ use super::{
 };
 use crate::memory::Visit;
 use crate::{
-    CraneModel,
+    CraneModel, Part,
     dyn_crane::{DynCrane, Instance},
 };
 
@@ -110,6 +110,7 @@ pub fn step<const N: usize, C: CraneModel<N>>(
     h: f64,
     state: &State<N>,
 ) -> Result<(State<N>, State<N>), NotFinite> {
+    const { Part::Dynamics.require(C::PARTS) }
     let crane = Instance::<N, _>(crane.clone());
     let references = References::new(&crane);
     let mut equations = Equations::new(&crane, references);

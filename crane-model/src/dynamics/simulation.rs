@@ -6,7 +6,10 @@ use super::{
     InitialState, Integration, Quantities, Run, Sample, Settings, Stepper, Stopped, Watch, course::follow_events,
     settings::divided, watch::Samples,
 };
-use crate::dyn_crane::{AnyCrane, CraneRef, DynCrane};
+use crate::{
+    Part,
+    dyn_crane::{AnyCrane, CraneRef, DynCrane},
+};
 
 /// A run: the integration of Eq. (23) from a start.
 ///
@@ -37,8 +40,9 @@ enum Way<'a> {
 /// Methods that run it do so if the start does not have as many numbers as the crane has coordinates.
 impl<'a> Simulation<'a> {
     /// A run of a crane by the method of the settings. Its events do not happen.
-    pub fn new<Size>(crane: impl AnyCrane<'a, Size>, start: impl Into<InitialState>, settings: &'a Settings) -> Self {
-        Self { way: Way::Method(crane.for_dynamics()), begin: 0.0, start: start.into(), settings }
+    pub fn new<Size, C: AnyCrane<'a, Size>>(crane: C, start: impl Into<InitialState>, settings: &'a Settings) -> Self {
+        const { Part::Dynamics.require(C::PARTS) }
+        Self { way: Way::Method(crane.on_slices()), begin: 0.0, start: start.into(), settings }
     }
 
     /// The same with the events of the crane; `quantities`: the results to which conditions refer. A result at the time of an event is that after
@@ -53,13 +57,14 @@ impl<'a> Simulation<'a> {
     }
 
     /// A run with a stepper made for this crane and these settings.
-    pub fn with_stepper<Size>(
+    pub fn with_stepper<Size, C: AnyCrane<'a, Size>>(
         stepper: &'a mut dyn Stepper,
-        crane: impl AnyCrane<'a, Size>,
+        crane: C,
         start: impl Into<InitialState>,
         settings: &'a Settings,
     ) -> Self {
-        Self { way: Way::Stepper(stepper, crane.for_dynamics()), begin: 0.0, start: start.into(), settings }
+        const { Part::Dynamics.require(C::PARTS) }
+        Self { way: Way::Stepper(stepper, crane.on_slices()), begin: 0.0, start: start.into(), settings }
     }
 
     /// From time `t`, s, over the settings' duration: the drives' motions continue from there. A run in pieces is reproduced exactly if it is

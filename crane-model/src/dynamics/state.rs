@@ -2,9 +2,9 @@
 
 use nalgebra::SVector;
 
-use crate::CraneModel;
 #[cfg(feature = "std")]
 use crate::StateAt;
+use crate::{CraneModel, Part};
 
 /// An acceleration is not finite: a body has no inertia, or the pose contains NaN. Or forces have states of their own, or
 /// joints close loops, which single steps do not support: an `Integration` does.
@@ -38,6 +38,7 @@ pub fn acceleration<const N: usize, C: CraneModel<N>>(
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
 ) -> Result<SVector<f64, N>, NotFinite> {
+    const { Part::Dynamics.require(C::PARTS) }
     if crane.description().has_hidden_forces() || !crane.loop_joints().is_empty() {
         return Err(NotFinite);
     }

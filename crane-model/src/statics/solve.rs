@@ -7,7 +7,7 @@ use super::{
     residual_scale::ResidualScale, tangent::Tangent, tipped::with_tipped_status,
 };
 use crate::{
-    CoordinateKind,
+    CoordinateKind, Part,
     dyn_crane::{AnyCrane, CraneRef},
     feet::Feet,
 };
@@ -33,8 +33,9 @@ pub struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     /// The crane with its drives, loads and winches where they are at t = 0.
-    pub fn new<Size>(crane: impl AnyCrane<'a, Size>) -> Self {
-        Self { crane: crane.for_statics(), t: 0.0, positions: None, from: None, settings: Settings::default() }
+    pub fn new<Size, C: AnyCrane<'a, Size>>(crane: C) -> Self {
+        const { Part::Statics.require(C::PARTS) }
+        Self { crane: crane.on_slices(), t: 0.0, positions: None, from: None, settings: Settings::default() }
     }
 
     /// With the drives, loads and winches where they are at time `t`, s: where the crane would rest if its motion stopped.

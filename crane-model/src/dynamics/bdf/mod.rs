@@ -34,7 +34,7 @@ use super::{
 };
 use crate::memory::{visit_count, visit_flag, visit_numbers, visit_optional};
 use crate::{
-    CraneModel,
+    CraneModel, Part,
     dyn_crane::{DynCrane, Instance},
     loop_joints::Open,
 };
@@ -81,6 +81,7 @@ pub fn step<const N: usize, C: CraneModel<N>>(
     const MANY: usize = 30;
     /// Allowed last increment, relative to 1 m or rad plus the size of the new state.
     const EXACT: f64 = 1e-14;
+    const { Part::Dynamics.require(C::PARTS) }
     let crane = Instance::<N, _>(crane.clone());
     let mut equations = Equations::new(&crane, References::new(&crane));
     if equations.states() > 0 || equations.has_loops() {
