@@ -93,7 +93,6 @@ pub use crane_quantities::{
     ValveInfo,
 };
 pub use links::fill_links;
-pub use methods::Entry;
 pub use model::{CraneModel, LaneDynamics, Linearisation, OneByOne};
 /// The linear algebra of every signature, so that generated code needs only this crate.
 pub use nalgebra;

@@ -1,107 +1,10 @@
 //! Methods of a crane, from the table of quantities.
 
 use crane_quantities::Part;
-use nalgebra::{Matrix4, Vector3};
-
-use crate::{SectionModuli, Tension, Wrench};
-
-/// An entry of a list of results, made of numbers.
-pub trait Entry: Copy {
-    /// How many numbers it has.
-    const LEN: usize;
-    /// The entry of these numbers, as functions write them: a matrix column by column.
-    ///
-    /// # Panics
-    /// If there are fewer than [`LEN`](Self::LEN).
-    fn from_numbers(numbers: &[f64]) -> Self;
-    /// Its numbers, in the same order.
-    fn numbers(&self) -> impl Iterator<Item = f64>;
-    /// The entry whose numbers are all the same.
-    fn repeat(number: f64) -> Self {
-        Self::from_numbers(&[number; 16][..Self::LEN.min(16)])
-    }
-}
 
 /// What a function returns that a crane of these parts does not have: 0 where it lacks such a component, NaN if its parts do not contain it.
 pub const fn absent(part: Part, parts: &[Part]) -> f64 {
     if part.is_in(parts) { 0.0 } else { f64::NAN }
-}
-
-impl Entry for f64 {
-    const LEN: usize = 1;
-    #[inline]
-    fn from_numbers(numbers: &[f64]) -> Self {
-        numbers[0]
-    }
-    fn numbers(&self) -> impl Iterator<Item = f64> {
-        [*self].into_iter()
-    }
-}
-
-impl<const N: usize> Entry for [f64; N] {
-    const LEN: usize = N;
-    fn repeat(number: f64) -> Self {
-        [number; N]
-    }
-    fn from_numbers(numbers: &[f64]) -> Self {
-        core::array::from_fn(|index| numbers[index])
-    }
-    fn numbers(&self) -> impl Iterator<Item = f64> {
-        self.iter().copied()
-    }
-}
-
-impl Entry for Vector3<f64> {
-    const LEN: usize = 3;
-    fn from_numbers(numbers: &[f64]) -> Self {
-        Vector3::new(numbers[0], numbers[1], numbers[2])
-    }
-    fn numbers(&self) -> impl Iterator<Item = f64> {
-        self.iter().copied()
-    }
-}
-
-impl Entry for Matrix4<f64> {
-    const LEN: usize = 16;
-    fn from_numbers(numbers: &[f64]) -> Self {
-        Matrix4::from_column_slice(&numbers[..16])
-    }
-    fn numbers(&self) -> impl Iterator<Item = f64> {
-        self.iter().copied()
-    }
-}
-
-impl Entry for Tension {
-    const LEN: usize = 3;
-    fn from_numbers(numbers: &[f64]) -> Self {
-        Tension { force: numbers[0], stiffness: numbers[1], damping: numbers[2] }
-    }
-    fn numbers(&self) -> impl Iterator<Item = f64> {
-        [self.force, self.stiffness, self.damping].into_iter()
-    }
-}
-
-impl Entry for Wrench {
-    const LEN: usize = 6;
-    fn from_numbers(numbers: &[f64]) -> Self {
-        Wrench { force: Vector3::from_numbers(numbers), moment: Vector3::from_numbers(&numbers[3..]) }
-    }
-    fn numbers(&self) -> impl Iterator<Item = f64> {
-        self.force.iter().chain(&self.moment).copied()
-    }
-}
-
-impl Entry for SectionModuli {
-    const LEN: usize = 8;
-    fn from_numbers(numbers: &[f64]) -> Self {
-        let [area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress] =
-            <[f64; 8]>::from_numbers(numbers);
-        SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress }
-    }
-    fn numbers(&self) -> impl Iterator<Item = f64> {
-        let SectionModuli { area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress } = *self;
-        [area, bending_y, bending_z, torsion, shear_y, shear_z, corners, allowable_stress].into_iter()
-    }
 }
 
 /// Type of an argument of the trait with the number of coordinates `N` in its type.
@@ -145,7 +48,7 @@ macro_rules! sized_method {
         #[doc = concat!("\n`out`: one ", stringify!($item), " for each of the crane's ", stringify!($count), ".")]
         #[allow(unused_variables, reason = "a crane without the function needs no arguments")]
         fn $name(&self, $($argument: sized_argument!($argument),)* out: &mut [sized_entry!($item)]) {
-            out.fill(Entry::repeat(const { absent(Part::$part, Self::PARTS) }));
+            cast_slice_mut::<_, f64>(out).fill(const { absent(Part::$part, Self::PARTS) });
         }
     };
     ($part:ident $rule:ident matrix [$($about:tt)*] $name:ident($($argument:ident),*)) => {

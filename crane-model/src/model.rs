@@ -2,12 +2,13 @@
 //!
 //! Throughout: `N` coordinates, `q` in m and rad, `v = q̇` in m/s and rad/s, `t` in s, world frame with z up.
 
+use bytemuck::cast_slice_mut;
 use crane_quantities::{Count, Part, quantities};
 use nalgebra::{Cholesky, Const, DefaultAllocator, Dim, OMatrix, SMatrix, SVector, allocator::Allocator};
 
 use crate::{
     Description, LoopJointInfo, ParameterError, StageInfo, fill_links,
-    methods::{Entry, absent, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
+    methods::{absent, sized_argument, sized_entry, sized_method, sized_methods, sized_result},
     rt::derivatives::{self, Changes, Columns, EightColumns, Joint, Link, States, Workspace, units},
     rt::lanes::f64x8,
 };

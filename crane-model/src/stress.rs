@@ -3,11 +3,14 @@
 //! The stresses are elastic, for a straight prismatic beam: they do not cover buckling of plates or of the beam, notches, welds,
 //! holes or load introduction, and are not a verification by a design code.
 
+use bytemuck::{Pod, Zeroable};
+
 #[cfg(feature = "std")]
 use crate::wrench::Wrench;
 
 /// Properties that relate forces and moments of a section to its largest stresses; all zero if the spec does not give them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct SectionModuli {
     /// Area, m²: `σ = N/A`.
     pub area: f64,

@@ -1,9 +1,11 @@
 //! Wrenches between parts of a crane.
 
+use bytemuck::{Pod, Zeroable};
 use nalgebra::Vector3;
 
 /// A force and a moment about a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Wrench {
     /// Force, N.
     pub force: Vector3<f64>,
@@ -17,7 +19,8 @@ impl Wrench {
 }
 
 /// Force with which a connector pulls its two points together, and how it depends on their distance.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Tension {
     /// Force, N; negative where the connector pushes.
     pub force: f64,

@@ -133,6 +133,16 @@ pub enum Item {
 }
 
 impl Item {
+    /// How many numbers it has; of a row, one per coordinate.
+    #[must_use]
+    pub const fn numbers(self) -> usize {
+        match self.shape(1) {
+            [Some(rows), Some(columns)] => rows * columns,
+            [Some(rows), None] => rows,
+            [None, _] => 1,
+        }
+    }
+
     /// Extent of each index, for n coordinates.
     const fn shape(self, n: usize) -> [Option<usize>; 2] {
         match self {

@@ -1,13 +1,13 @@
 //! Adapts cranes with the number of coordinates in their type to the trait on slices.
 
-use crane_quantities::{Part, quantities};
+use bytemuck::{cast_slice_mut, try_cast_slice_mut};
+use crane_quantities::{FunctionId, Part, quantities};
 use nalgebra::{Matrix6, SMatrix, SVector};
 
-use super::methods::{instance_method, instance_methods, sized};
-use super::{DynBlock, DynCrane, DynSystem};
+use super::methods::{call_sized, call_sized_row, sized};
+use super::{Arguments, Derived, DynBlock, DynCrane, DynSystem};
 use crate::{
-    CraneModel, Description, LaneDynamics, Linearisation, LoopJointInfo, ParameterError, StageInfo, entry_type,
-    rt::lanes::f64x8, slice_argument,
+    CraneModel, Description, LaneDynamics, Linearisation, LoopJointInfo, ParameterError, StageInfo, rt::lanes::f64x8,
 };
 
 /// Adapts a crane of `N` coordinates to slices.
@@ -30,11 +30,30 @@ fn vector<T: nalgebra::Scalar + Copy, const N: usize>(slice: &[T]) -> SVector<T,
     SVector::from(<[T; N]>::try_from(slice).expect("as many numbers as coordinates"))
 }
 
-impl<const N: usize, C: CraneModel<N>> DynCrane for Instance<N, C> {
-    fn parts(&self) -> &[Part] {
-        C::PARTS
+impl<const N: usize, C: CraneModel<N>> Instance<N, C> {
+    /// Functions whose methods are written by hand.
+    fn call_other(&self, id: FunctionId, at: &Arguments<'_>, out: &mut [f64]) -> Derived {
+        match id {
+            FunctionId::Linearise => {
+                let Linearisation { mass, stiffness, damping } = self.0.linearise(&vector(at.q));
+                let numbers =
+                    [mass, stiffness, damping].into_iter().flat_map(|matrix| matrix.data.0.into_iter().flatten());
+                out.iter_mut().zip(numbers).for_each(|(out, number)| *out = number);
+            }
+            FunctionId::ForwardDynamicsDerivatives => {
+                self.0.forward_dynamics_derivatives(at.t, &vector(at.q), &vector(at.v), out.as_chunks_mut().0);
+            }
+            // They fill types of their own, see `prescribe` and `system`.
+            _ => {
+                out.fill(f64::NAN);
+                return Derived::No;
+            }
+        }
+        Derived::Yes
     }
+}
 
+impl<const N: usize, C: CraneModel<N>> DynCrane for Instance<N, C> {
     fn description(&self) -> &Description {
         self.0.description()
     }
@@ -102,19 +121,14 @@ impl<const N: usize, C: CraneModel<N>> DynCrane for Instance<N, C> {
         Ok(Box::new(Block::<N, _>(C::lanes(cranes.each_ref()))))
     }
 
-    fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]) {
-        let Linearisation { mass: a, stiffness: k, damping: d } = self.0.linearise(&vector(q));
-        let write = |out: &mut [f64], matrix: &SMatrix<f64, N, N>| out.copy_from_slice(matrix.as_slice());
-        write(mass, &a);
-        write(stiffness, &k);
-        write(damping, &d);
+    fn call(&self, id: FunctionId, at: &Arguments<'_>, out: &mut [f64]) -> Derived {
+        if !id.part().is_in(C::PARTS) {
+            out.fill(f64::NAN);
+            return Derived::No;
+        }
+        quantities! { @(call_sized) [id (self.0, at, out, return self.call_other(id, at, out))] }
+        Derived::Yes
     }
-
-    fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
-        self.0.forward_dynamics_derivatives(t, &vector(q), &vector(v), out.as_chunks_mut().0);
-    }
-
-    quantities! { instance_methods }
 }
 
 /// A linear system and its factors.

@@ -8,7 +8,7 @@ macro_rules! slice_methods {
         $(python($($python:tt)*))?;
     )* })*) => {
         $($(slice_method! {
-            $result [
+            $id $result [
                 #[allow(clippy::doc_markdown, reason = "names of symbols, as in generated code")]
                 #[doc = $doc]
                 #[doc = concat!("\n`", $equation, "`")]
@@ -19,79 +19,79 @@ macro_rules! slice_methods {
 
 /// A method of a crane on slices.
 macro_rules! slice_method {
-    (other $($row:tt)*) => {};
-    ([$item:ident; $count:ident] [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+    ($id:ident other $($row:tt)*) => {};
+    ($id:ident number [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+        $($about)*
+        fn $name(&self, $($argument: slice_argument!($argument)),*) -> f64 {
+            let mut number = [f64::NAN];
+            self.call(FunctionId::$id, &Arguments { $($argument,)* ..Arguments::none() }, &mut number);
+            number[0]
+        }
+    };
+    ($id:ident [$item:ident; $count:ident] [$($about:tt)*] $name:ident($($argument:ident),*)) => {
         $($about)*
         #[doc = concat!("\n`out`: one ", stringify!($item), " for each of the crane's ", stringify!($count), ".")]
-        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [entry_type!($item)]);
+        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [entry_type!($item)]) {
+            self.call(FunctionId::$id, &Arguments { $($argument,)* ..Arguments::none() }, cast_slice_mut(out));
+        }
     };
-    (number [$($about:tt)*] $name:ident($($argument:ident),*)) => {
-        $($about)*
-        fn $name(&self, $($argument: slice_argument!($argument)),*) -> f64;
+    ($id:ident base [$($about:tt)*] $($signature:tt)*) => {
+        slice_method! { $id numbers [$($about)* #[doc = "\n`out`: 36 numbers, column by column."]] $($signature)* }
     };
-    (base [$($about:tt)*] $name:ident($($argument:ident),*)) => {
+    ($id:ident $numbers:ident [$($about:tt)*] $name:ident($($argument:ident),*)) => {
         $($about)*
-        #[doc = "\n`out`: 36 numbers, column by column."]
-        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [f64]);
-    };
-    ($numbers:ident [$($about:tt)*] $name:ident($($argument:ident),*)) => {
-        $($about)*
-        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [f64]);
+        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [f64]) {
+            self.call(FunctionId::$id, &Arguments { $($argument,)* ..Arguments::none() }, out);
+        }
     };
 }
 
-/// The methods of an instance, which call those of the crane with the size in its type.
-macro_rules! instance_methods {
-    ($($part:ident { $(
+/// Calls the function of an identifier of the crane with the size in its type.
+macro_rules! call_sized {
+    ($id:ident $call:tt $($part:ident { $(
         $(#[doc = $remark:literal])*
-        $id:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
+        $row:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
         $(python($($python:tt)*))?;
     )* })*) => {
-        $($(instance_method! { $result $name($($argument),*) })*)*
+        match $id {
+            $($(FunctionId::$row => {
+                call_sized_row! { $result $call $name($($argument),*) }
+            })*)*
+        }
     };
 }
 
 /// An argument for the crane with the size in its type.
 macro_rules! sized {
-    (t $t:ident) => {
-        $t
+    ($at:ident t) => {
+        $at.t
     };
-    ($kind:ident $slice:ident) => {
-        &vector($slice)
-    };
-}
-
-/// A method of an instance.
-macro_rules! instance_method {
-    (other $($row:tt)*) => {};
-    ([row; $count:ident] $name:ident($($argument:ident),*)) => {
-        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [f64]) {
-            self.0.$name($(sized!($argument $argument),)* out.as_chunks_mut().0);
-        }
-    };
-    ([$item:ident; $count:ident] $name:ident($($argument:ident),*)) => {
-        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [entry_type!($item)]) {
-            self.0.$name($(sized!($argument $argument),)* out);
-        }
-    };
-    (number $name:ident($($argument:ident),*)) => {
-        fn $name(&self, $($argument: slice_argument!($argument)),*) -> f64 {
-            self.0.$name($(sized!($argument $argument)),*)
-        }
-    };
-    (matrix $name:ident($($argument:ident),*)) => {
-        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [f64]) {
-            // Matrices without rows have no size to cast to.
-            for out in bytemuck::try_cast_slice_mut::<f64, SMatrix<f64, N, N>>(out).into_iter().flatten() {
-                self.0.$name($(sized!($argument $argument),)* out);
-            }
-        }
-    };
-    ($numbers:ident $name:ident($($argument:ident),*)) => {
-        fn $name(&self, $($argument: slice_argument!($argument),)* out: &mut [f64]) {
-            out.copy_from_slice(self.0.$name($(sized!($argument $argument)),*).as_slice());
-        }
+    ($at:ident $vector:ident) => {
+        &vector($at.$vector)
     };
 }
 
-pub(super) use {instance_method, instance_methods, sized, slice_method, slice_methods};
+/// A call of a row.
+macro_rules! call_sized_row {
+    (other ($crane:expr, $at:ident, $out:ident, $other:expr) $name:ident($($argument:ident),*)) => { $other };
+    ([row; $count:ident] ($crane:expr, $at:ident, $out:ident, $other:expr) $name:ident($($argument:ident),*)) => {
+        $crane.$name($(sized!($at $argument),)* $out.as_chunks_mut().0)
+    };
+    ([$item:ident; $count:ident] ($crane:expr, $at:ident, $out:ident, $other:expr) $name:ident($($argument:ident),*)) => {
+        $crane.$name($(sized!($at $argument),)* cast_slice_mut($out))
+    };
+    (number ($crane:expr, $at:ident, $out:ident, $other:expr) $name:ident($($argument:ident),*)) => {
+        $out.fill($crane.$name($(sized!($at $argument)),*))
+    };
+    (matrix ($crane:expr, $at:ident, $out:ident, $other:expr) $name:ident($($argument:ident),*)) => {
+        // Matrices without rows have no size to cast to.
+        for out in try_cast_slice_mut::<f64, SMatrix<f64, N, N>>($out).into_iter().flatten() {
+            $crane.$name($(sized!($at $argument),)* out);
+        }
+    };
+    ($numbers:ident ($crane:expr, $at:ident, $out:ident, $other:expr) $name:ident($($argument:ident),*)) => {
+        $out.copy_from_slice($crane.$name($(sized!($at $argument)),*).as_slice())
+    };
+}
+
+pub(super) use {call_sized, call_sized_row, sized, slice_method, slice_methods};

@@ -10,13 +10,16 @@
 //! method keeps its workspace.
 
 mod any;
+mod arguments;
 mod declare;
 mod instance;
 mod methods;
 mod quantities;
 
 pub use any::{AnyCrane, AnySize, CraneRef, OfSize};
-use crane_quantities::{Count, Part, quantities};
+pub use arguments::Arguments;
+use bytemuck::cast_slice_mut;
+use crane_quantities::{Count, FunctionId, quantities};
 pub(crate) use instance::Block;
 pub use instance::{Instance, boxed};
 pub use quantities::Energies;
@@ -25,12 +28,26 @@ use methods::{slice_method, slice_methods};
 
 use crate::{Description, LoopJointInfo, ParameterError, StageInfo, entry_type, rt::lanes::f64x8, slice_argument};
 
+/// Whether a function is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Derived {
+    /// The results are those of the function: zeros if the crane lacks such a component.
+    Yes,
+    /// The crane does not have the function, and the results are NaN: `analyses` of its spec leave out its part, it has too many coordinates, or it is
+    /// several cranes.
+    No,
+}
+
 /// Everything that is computed of a crane: [`CraneModel`](crate::CraneModel) on slices.
 ///
 /// Functions that return owned lists and matrices are methods of [`dyn DynCrane`](trait.DynCrane.html#impl-dyn+DynCrane).
 pub trait DynCrane: Send + Sync {
-    /// The parts of the table of quantities that it has. Functions of others are NaN.
-    fn parts(&self) -> &[Part];
+    /// Computes a function of the table of quantities. `out`: its result in full, as the method of that name writes it, item after item: a vector, a
+    /// wrench and a matrix have 3, 6 and 16 numbers, the latter column by column; of [`linearise`](Self::linearise) and
+    /// [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives), three matrices.
+    ///
+    /// All methods of the table are calls of it.
+    fn call(&self, id: FunctionId, arguments: &Arguments<'_>, out: &mut [f64]) -> Derived;
 
     /// Names, units and settings.
     fn description(&self) -> &Description;
@@ -113,12 +130,16 @@ pub trait DynCrane: Send + Sync {
     /// Storage for the factors of a system of this crane; created once per run.
     fn system(&self) -> Box<dyn DynSystem + '_>;
 
-    /// A, K and D at a pose, each n × n.
-    fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]);
+    /// A, K and D of small motions about a pose at rest, each n × n.
+    fn linearise(&self, q: &[f64], out: &mut [f64]) {
+        self.call(FunctionId::Linearise, &Arguments { q, ..Arguments::none() }, out);
+    }
 
     /// Rows of ∂q̈/∂q, ∂q̈/∂v and ∂q̈/∂τ = A⁻¹, 3 n rows of n numbers:
     /// [`CraneModel::forward_dynamics_derivatives`](crate::CraneModel::forward_dynamics_derivatives).
-    fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]);
+    fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
+        self.call(FunctionId::ForwardDynamicsDerivatives, &Arguments { t, q, v, ..Arguments::none() }, out);
+    }
 
     /// The number of cranes in a block: a multiple of eight.
     fn lanes(&self) -> usize {

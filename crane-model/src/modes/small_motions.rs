@@ -45,9 +45,11 @@ impl<const N: usize> From<&Linearisation<N>> for SmallMotions {
 impl SmallMotions {
     /// About the pose `q` of a crane of any size.
     pub fn about_pose(crane: &dyn DynCrane, q: &[f64]) -> Self {
-        let zeros = || DMatrix::zeros(q.len(), q.len());
-        let (mut mass, mut stiffness, mut damping) = (zeros(), zeros(), zeros());
-        crane.linearise(q, mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());
+        let n = q.len();
+        let mut numbers = vec![0.0; 3 * n * n];
+        crane.linearise(q, &mut numbers);
+        let [mass, stiffness, damping] =
+            [0, 1, 2].map(|index| DMatrix::from_column_slice(n, n, &numbers[index * n * n..(index + 1) * n * n]));
         let all = Self { mass, stiffness, damping, unknowns: (0..q.len()).collect(), size: q.len(), basis: None };
         all.without(&crane.description().prescribed())
     }

@@ -80,8 +80,9 @@ impl<const N: usize> CraneModel<N> for Live<N> {
     }
 
     fn linearise(&self, q: &SVector<f64, N>) -> Linearisation<N> {
-        let [mut mass, mut stiffness, mut damping] = [SMatrix::<f64, N, N>::zeros(); 3];
-        self.0.linearise(q.as_slice(), mass.as_mut_slice(), stiffness.as_mut_slice(), damping.as_mut_slice());
+        let mut matrices = [SMatrix::<f64, N, N>::zeros(); 3];
+        self.0.linearise(q.as_slice(), bytemuck::cast_slice_mut(&mut matrices));
+        let [mass, stiffness, damping] = matrices;
         Linearisation { mass, stiffness, damping }
     }
 }

@@ -92,12 +92,12 @@ work!(ForwardDynamicsDerivatives, forward_dynamics_derivatives(
 mod tests {
     use crane_codegen::build;
     use crane_codegen::program::FunctionId;
-    use crane_model::dyn_crane::DynCrane;
+    use crane_model::dyn_crane::{Arguments, DynCrane};
 
     use crate::LiveCrane;
     use crate::dual::{DIRECTIONS, Dual8};
+    use crate::evaluation::Evaluation;
     use crate::machine::Number;
-    use crate::rows::Evaluation;
 
     /// Prescribed coordinates, feet, stops, friction, branches, both section joints, cylinders.
     const NAMES: [&str; 8] = [
@@ -128,7 +128,13 @@ mod tests {
                     values.iter().enumerate().map(|(i, value)| Dual8::along(*value, along(i))).collect()
                 };
                 let (q, v, a) = (numbers(q, block == 0), numbers(v, block == 1), numbers(a, false));
-                for (row, result) in of_block.chunks_exact_mut(n).zip(evaluation.at(Dual8::splat(t), &q, &v, &a)) {
+                for (row, result) in of_block.chunks_exact_mut(n).zip(evaluation.at(&Arguments {
+                    t: Dual8::splat(t),
+                    q: &q,
+                    v: &v,
+                    a: &a,
+                    ..Arguments::none()
+                })) {
                     let columns = row.iter_mut().skip(first).take(DIRECTIONS).enumerate();
                     columns.for_each(|(direction, entry)| *entry = result.slope(direction));
                 }

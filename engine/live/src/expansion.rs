@@ -1,9 +1,8 @@
 //! Results computed from the factors that a function returns if its result is too long to be written out.
 
-use std::ops::{Mul, Neg};
+use std::ops::{Add, Mul, Neg};
 
 use crane_codegen::program::ConcurrentAxes;
-use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::rt::fma;
 use crane_model::rt::lanes::Fused;
 
@@ -48,32 +47,35 @@ fn along<T: Fused + Mul<Output = T>>(n: [T; 3], x: [T; 3]) -> T {
     fma(n[0], x[0], fma(n[1], x[1], n[2] * x[2]))
 }
 
-/// `∂²T/∂q_m∂q_n = Ω_m ∂T/∂q_n`, body by body, m ≤ n, from the axes of all coordinates and three rows of every first derivative;
+/// `∂²T/∂q_m∂q_n = Ω_m ∂T/∂q_n`, body by body, m ≤ n, each column by column, from the axes of all coordinates and three rows of every first derivative;
 /// `degrees`: the number of coordinates that move each body; `vectors`: first coordinates of rotation vectors, whose pairs have
 /// an additional `Σ_k share_k ∂T/∂q_k`.
-pub fn second_derivatives(
+pub fn second_derivatives<T: Copy + Add<Output = T> + Mul<Output = T> + Neg<Output = T>>(
     degrees: &[usize],
     coordinates: usize,
     vectors: &[usize],
-    factors: &[f64],
-    out: &mut [Matrix4<f64>],
+    (factors, zero): (&[T], T),
+    out: &mut [T],
 ) {
     let (axes, rest) = factors.split_at(3 * coordinates);
     let (first, shares) = rest.split_at(rest.len() - 18 * vectors.len());
     let (axes, first, shares) = (axes.as_chunks::<3>().0, first.as_chunks::<12>().0, shares.as_chunks::<3>().0);
     let mut start = 0;
-    let mut out = out.iter_mut();
+    let mut out = out.as_chunks_mut::<16>().0.iter_mut();
     for &count in degrees {
         for m in 0..count {
             for n in m..count {
                 if let Some(entry) = out.next() {
-                    *entry = turned(Vector3::from(axes[m]), &first[start + n]);
+                    *entry = turned(axes[m], &first[start + n], zero);
                     let within = |of: &usize| *of <= m && n < of + 3;
                     if let Some(vector) = vectors.iter().position(within) {
                         let (of, row) = (vectors[vector], m - vectors[vector]);
                         let pair = 6 * vector + row * 3 - row * row.saturating_sub(1) / 2 + n - m;
                         for (k, share) in shares[pair].iter().enumerate() {
-                            *entry += *share * derivative(&first[start + of + k]);
+                            for (index, number) in first[start + of + k].iter().enumerate() {
+                                let place = 4 * (index % 4) + index / 4;
+                                entry[place] = entry[place] + *share * *number;
+                            }
                         }
                     }
                 }
@@ -83,13 +85,17 @@ pub fn second_derivatives(
     }
 }
 
-/// A derivative from three rows.
-fn derivative(rows: &[f64; 12]) -> Matrix4<f64> {
-    Matrix4::from_fn(|row, column| rows.get(4 * row + column).copied().unwrap_or(0.0))
-}
-
-/// `ω ×` every column of a matrix of three rows, stored row by row.
-fn turned(axis: Vector3<f64>, rows: &[f64; 12]) -> Matrix4<f64> {
-    let column = |k: usize| axis.cross(&Vector3::new(rows[k], rows[4 + k], rows[8 + k])).push(0.0);
-    Matrix4::from_columns(&[column(0), column(1), column(2), column(3)])
+/// `ω ×` every column of a matrix of three rows, stored row by row; a matrix column by column.
+fn turned<T: Copy + Add<Output = T> + Mul<Output = T> + Neg<Output = T>>(
+    [x, y, z]: [T; 3],
+    rows: &[T; 12],
+    zero: T,
+) -> [T; 16] {
+    let minus = |a: T, b: T| a + -b;
+    let column = |k: usize| {
+        let [a, b, c] = [rows[k], rows[4 + k], rows[8 + k]];
+        [minus(y * c, z * b), minus(z * a, x * c), minus(x * b, y * a), zero]
+    };
+    let columns = [column(0), column(1), column(2), column(3)];
+    std::array::from_fn(|index| columns[index / 4][index % 4])
 }

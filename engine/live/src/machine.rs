@@ -3,6 +3,7 @@
 use std::ops::{Add, Div, Mul, Neg};
 
 use crane_codegen::program::Argument;
+use crane_model::dyn_crane::Arguments;
 use crane_model::rt::derivatives::{Columns, Constant, EightColumns, EightStates};
 use crane_model::rt::lanes::{Function, Fused, f64x8};
 use crane_model::rt::{exp, fma, select, sin_cos, sin_cos_lanes, sqrt, stumpff, stumpff_lanes};
@@ -148,23 +149,13 @@ impl Batch for f64x8 {
     }
 }
 
-/// Values of a function's arguments; unused ones may be empty.
+/// What a function reads; what it does not read may be empty.
 #[derive(Clone, Copy, Debug)]
-pub struct Arguments<'a, T> {
-    /// Time, s.
-    pub t: T,
-    /// Coordinates, m and rad.
-    pub q: &'a [T],
-    /// Their rates.
-    pub v: &'a [T],
-    /// Accelerations.
-    pub a: &'a [T],
-    /// Right-hand side of a linear system.
-    pub r: &'a [T],
+pub struct Environment<'a, T> {
+    /// Arguments of functions of the table of quantities.
+    pub arguments: Arguments<'a, T>,
     /// Weights of the results of the function of a product.
     pub multiplier: &'a [T],
-    /// Positions at which drives are held.
-    pub positions: &'a [T],
     /// Added inertias of single coordinates.
     pub added_inertia: &'a [T],
     /// Added inertia of the base, 6×6, column by column.
@@ -179,19 +170,12 @@ pub struct Arguments<'a, T> {
     pub inputs: &'a [T],
 }
 
-impl<T: Number> Arguments<'_, T> {
-    /// No arguments, at t = 0.
-    #[must_use]
-    pub fn none() -> Self {
-        let t = T::splat(0.0);
+impl<'a, T: Number> From<Arguments<'a, T>> for Environment<'a, T> {
+    /// Nothing but these.
+    fn from(arguments: Arguments<'a, T>) -> Self {
         Self {
-            t,
-            q: &[],
-            v: &[],
-            a: &[],
-            r: &[],
+            arguments,
             multiplier: &[],
-            positions: &[],
             added_inertia: &[],
             base: &[],
             factors: &[],
@@ -200,17 +184,26 @@ impl<T: Number> Arguments<'_, T> {
             inputs: &[],
         }
     }
+}
+
+impl<T: Number> Environment<'_, T> {
+    /// Nothing, at t = 0.
+    #[must_use]
+    pub fn none() -> Self {
+        Arguments::none().into()
+    }
 
     /// The numbers of an argument.
     fn numbers(&self, argument: Argument) -> &[T] {
+        let Arguments { t, q, v, a, r, positions } = &self.arguments;
         match argument {
-            Argument::Time => std::slice::from_ref(&self.t),
-            Argument::Position => self.q,
-            Argument::Velocity => self.v,
-            Argument::Acceleration => self.a,
-            Argument::RightHandSide => self.r,
+            Argument::Time => std::slice::from_ref(t),
+            Argument::Position => q,
+            Argument::Velocity => v,
+            Argument::Acceleration => a,
+            Argument::RightHandSide => r,
+            Argument::DrivePositions => positions,
             Argument::Multiplier => self.multiplier,
-            Argument::DrivePositions => self.positions,
             Argument::AddedInertia => self.added_inertia,
             Argument::BaseAddedInertia => self.base,
             Argument::Factors => self.factors,
@@ -221,7 +214,7 @@ impl<T: Number> Arguments<'_, T> {
         }
     }
 
-    /// The numbers of an input; `None` if the argument is not given, which means zeros.
+    /// The numbers of an input; `None` if they are not given, which means zeros.
     fn given(&self, inputs: &Inputs) -> Option<&[T]> {
         let (numbers, last) = (self.numbers(inputs.argument), inputs.first + inputs.count);
         assert!(
@@ -333,9 +326,9 @@ impl<T: Number> Machine<T> {
         self.file.registers()
     }
 
-    /// Runs the function for which the machine was made. Arguments that are not given are zero.
-    pub fn run(&mut self, code: &Code, arguments: &Arguments<'_, T>, out: &mut [T]) {
-        arguments.write(code, self.registers(), 0);
+    /// Runs the function for which the machine was made. What is not given is zero.
+    pub fn run(&mut self, code: &Code, environment: &Environment<'_, T>, out: &mut [T]) {
+        environment.write(code, self.registers(), 0);
         match (&code.instructions, &mut self.file) {
             (Instructions::Narrow(narrow), File::Small(file)) => run(code, narrow, &mut **file, out),
             (Instructions::Narrow(narrow), File::Medium(file)) => run(code, narrow, &mut **file, out),

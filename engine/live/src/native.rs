@@ -10,7 +10,7 @@ use crane_model::rt::sin_cos;
 
 use crate::bytecode::{Code, Fixed, Instruction, Instructions, Kind, Operands, ROUNDING};
 use crate::dual::eight_orders;
-use crate::machine::{ANGLES, Arguments, Form, Machine, Number};
+use crate::machine::{ANGLES, Environment, Form, Machine, Number};
 use crate::sines::{MOST, with_sines};
 use crate::tangent::tangent;
 
@@ -120,15 +120,15 @@ impl Native {
         &self,
         code: &Code,
         machine: &mut Machine<T>,
-        arguments: &Arguments<'_, T>,
+        environment: &Environment<'_, T>,
         out: &mut [T],
     ) -> bool {
         if T::FORM == Form::Slopes {
-            self.run_with_slopes(code, machine, arguments, out);
+            self.run_with_slopes(code, machine, environment, out);
             return true;
         }
         let (frame, version) = machine.frame(|fixed| self.frame(fixed));
-        arguments.write(code, frame, std::mem::replace(version, arguments.version));
+        environment.write(code, frame, std::mem::replace(version, environment.version));
         for part in 0..self.code.parts() {
             self.code.run(part, T::flat(frame), T::flat(out));
             match (self.code.pause(part), self.pauses.get(part)) {
@@ -150,7 +150,7 @@ impl Native {
         &self,
         code: &Code,
         machine: &mut Machine<T>,
-        arguments: &Arguments<'_, T>,
+        environment: &Environment<'_, T>,
         out: &mut [T],
     ) {
         let [fixed, given] = self.given;
@@ -165,7 +165,7 @@ impl Native {
                 [frame[index], frame[given + index]] = number.cells();
             }
         }
-        arguments.each(code, |index, number| [frame[index], frame[given + index]] = number.cells());
+        environment.each(code, |index, number| [frame[index], frame[given + index]] = number.cells());
         for part in 0..self.code.parts() {
             self.code.run(part, f64x8::flat(frame), f64x8::flat(results));
             if let (Some(pause), Some(kind)) = (self.code.pause(part), self.pauses.get(part)) {

@@ -14,14 +14,14 @@ use std::sync::Arc;
 
 use crane_codegen::chain::Input;
 use crane_codegen::program::{self, Argument, FunctionId, PULLED_BACK, Product};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{Arguments, DynCrane};
 
 use crate::LiveCrane;
 use crate::assemble::TooLarge;
 use crate::dual::{DIRECTIONS, Dual8};
+use crate::evaluation::Evaluation;
 use crate::library::Library;
-use crate::machine::{Arguments, Machine, Number};
-use crate::rows::Evaluation;
+use crate::machine::{Environment, Machine, Number};
 
 /// A state at which a function is differentiated, or eight.
 #[derive(Clone, Copy, Debug)]
@@ -101,9 +101,10 @@ impl<T: Number> Calls<T> {
     fn run(&mut self, state: &ProductState<'_, T>, multiplier: &[T]) {
         let Self { library, function, product, machine, inputs, results, .. } = self;
         let &ProductState { t, q, v, a } = state;
-        let arguments = Arguments { t, q, v, a, multiplier, inputs, ..Arguments::none() };
+        let arguments = Arguments { t, q, v, a, ..Arguments::none() };
+        let environment = Environment { multiplier, inputs, ..arguments.into() };
         if let Ok(Some(routine)) = library.product(*function, *product) {
-            routine.run(machine, &arguments, results);
+            routine.run(machine, &environment, results);
         }
     }
 }
@@ -243,8 +244,8 @@ impl PushForwardOfLarge {
             self.evaluation.set_parameters(&along);
             self.parameters = rests.then(|| parameters.to_vec());
         }
-        self.evaluation.set_inputs(&inputs);
-        let results = self.evaluation.at(t, &q, &v, &a);
+        self.evaluation.set_inputs(inputs);
+        let results = self.evaluation.at(&Arguments { t, q: &q, v: &v, a: &a, ..Arguments::none() });
         out.iter_mut().zip(results).for_each(|(out, number)| *out = number.slope(0));
     }
 }

@@ -6,7 +6,7 @@ use crane_codegen::symbolic::{ExprId, Op};
 
 use crate::assemble::{assemble, assemble_constants};
 use crate::bytecode::Code;
-use crate::machine::{Arguments, Form, Machine, Number};
+use crate::machine::{Environment, Form, Machine, Number};
 use crate::native::{Hot, Native};
 
 /// A function as bytecode, with its constants computed from live parameters; and as machine code, once it was called often.
@@ -75,25 +75,25 @@ impl Routine {
         let zero = T::splat(0.0);
         let nothing = |_| zero;
         let mut stored = vec![zero; self.constants.results];
-        let arguments = Arguments { parameters, ..Arguments::none() };
+        let environment = Environment { parameters, ..Environment::none() };
         let mut constants = Machine::new(&self.constants);
         constants.fix(&self.constants, nothing, nothing);
-        constants.run(&self.constants, &arguments, &mut stored);
+        constants.run(&self.constants, &environment, &mut stored);
         let at = |values: &[T], index: usize| values.get(index).copied().unwrap_or(zero);
         machine.fix(&self.code, |index| at(parameters, index), |index| at(&stored, index));
     }
 
     /// Runs it on a machine that it made: from some hundred calls on as machine code, with the same results.
-    pub fn run<T: Number>(&self, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
+    pub fn run<T: Number>(&self, machine: &mut Machine<T>, environment: &Environment<'_, T>, out: &mut [T]) {
         let native = self.hot::<T>().called(&self.code, T::FORM).filter(|native| out.len() >= native.results());
-        if !native.is_some_and(|native| native.run(&self.code, machine, arguments, out)) {
-            machine.run(&self.code, arguments, out);
+        if !native.is_some_and(|native| native.run(&self.code, machine, environment, out)) {
+            machine.run(&self.code, environment, out);
         }
     }
 
     /// Runs its bytecode.
-    pub fn interpret<T: Number>(&self, machine: &mut Machine<T>, arguments: &Arguments<'_, T>, out: &mut [T]) {
-        machine.run(&self.code, arguments, out);
+    pub fn interpret<T: Number>(&self, machine: &mut Machine<T>, environment: &Environment<'_, T>, out: &mut [T]) {
+        machine.run(&self.code, environment, out);
     }
 
     /// Makes its machine code now, instead of after some hundred calls; returns its bytes, or `None` if this processor or

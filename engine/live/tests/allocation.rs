@@ -5,10 +5,10 @@ mod every;
 use crane_codegen::build;
 use crane_codegen::program::FunctionId;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{Arguments, DynCrane};
 use crane_model::nalgebra::Matrix6;
 use crane_model::rt::lanes::f64x8;
-use every::{At, call_every};
+use every::call_every;
 
 fn crane() -> LiveCrane {
     let path = format!("{}/../../specs/eight_link_flexible.yaml", env!("CARGO_MANIFEST_DIR"));
@@ -21,7 +21,7 @@ fn a_second_call_allocates_nothing() {
     let crane = crane();
     let n = crane.size();
     let (q, v) = (crane.chain().guess.clone(), vec![0.1; n]);
-    let at = At { t: 0.1, q: &q, v: &v, a: &v, r: &v, positions: &q };
+    let at = Arguments { t: 0.1, q: &q, v: &v, a: &v, r: &v, positions: &q };
     let mut of_second = |id: FunctionId, call: &mut dyn FnMut()| {
         call();
         assert_eq!(allocation_counter::measure(&mut *call).count_total, 0, "{}", id.name());

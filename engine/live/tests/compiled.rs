@@ -7,11 +7,11 @@ use std::ops::ControlFlow;
 use crane_codegen::build;
 use crane_codegen::program::{Count, Extent, FunctionId};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{DynCrane, Instance};
+use crane_model::dyn_crane::{Arguments, DynCrane, Instance};
 use crane_model::dynamics::{InitialState, Settings, ensemble::Member};
 use crane_model::nalgebra::Matrix6;
 use crane_model::{ParameterError, modes, statics};
-use every::{At, call_every};
+use every::call_every;
 
 /// Whether a product and a sum round once: a loop of compiled code may then fuse other pairs than bytecode does.
 const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
@@ -55,21 +55,15 @@ fn everything(crane: &dyn DynCrane) -> Vec<(&'static str, Vec<f64>)> {
     let held: Vec<f64> = q.iter().map(|q| 0.95 * q).collect();
     let r: Vec<f64> = v.iter().map(|v| 100.0 * v).collect();
     let n = crane.size();
-    let at = At { t, q: &q, v: &v, a: &r, r: &r, positions: &held };
+    let at = Arguments { t, q: &q, v: &v, a: &r, r: &r, positions: &held };
     let mut all = Vec::new();
     call_every(crane, at, &mut |_, call| call(), &mut |id, numbers| all.push((id.name(), numbers)));
-    let [mut mass, mut stiffness, mut damping] = [f64::NAN; 3].map(|number| vec![number; n * n]);
-    crane.linearise(&q, &mut mass, &mut stiffness, &mut damping);
+    let mut linearisation = vec![f64::NAN; 3 * n * n];
+    crane.linearise(&q, &mut linearisation);
     let (mut system, mut solution) = (crane.system(), vec![f64::NAN; n]);
     system.factorise(&q, &vec![3.0; n], Matrix6::from_diagonal_element(5.0).as_slice());
     system.solve(&r, &mut solution);
-    all.extend([
-        ("prescribed motions", prescribed(crane)),
-        ("solve", solution),
-        ("linearised mass", mass),
-        ("linearised stiffness", stiffness),
-        ("linearised damping", damping),
-    ]);
+    all.extend([("prescribed motions", prescribed(crane)), ("solve", solution), ("linearisation", linearisation)]);
     all
 }
 

@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crane_codegen::build;
 use crane_codegen::program::{Count, Extent, FunctionId, Item};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{Arguments, DynCrane};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::results::Peaks;
 use crane_model::runs::ensemble::{Case, Execution, Outcome, Reason, run_ensemble};
-use every::{At, call_every};
+use every::call_every;
 
 const CRANES: usize = 8;
 /// Cranes that have fleets, the last one with inputs.
@@ -89,7 +89,7 @@ fn length(item: Item) -> usize {
 /// Every number and list of a crane at a state.
 fn everything(crane: &dyn DynCrane, (q, v): (&[f64], &[f64])) -> Vec<(FunctionId, Vec<f64>)> {
     let r: Vec<f64> = v.iter().map(|v| 100.0 * v).collect();
-    let at = At { t: 0.7, q, v, a: &r, r: &r, positions: q };
+    let at = Arguments { t: 0.7, q, v, a: &r, r: &r, positions: q };
     let mut all = Vec::new();
     call_every(crane, at, &mut |_, call| call(), &mut |id, numbers| all.push((id, numbers)));
     all

@@ -3,8 +3,9 @@
 use crane_codegen::chain::{Analyses, Chain};
 use crane_codegen::program::{FunctionId, Program};
 use crane_codegen::{build, compile, mechanics};
-use crane_live::machine::{Arguments, Batch, Machine, Number};
+use crane_live::machine::{Batch, Environment, Machine, Number};
 use crane_live::{DIRECTIONS, Dual8, Routine};
+use crane_model::dyn_crane::Arguments;
 use crane_model::rt::lanes::f64x8;
 
 /// Whether this processor has machine code for one state, and for eight.
@@ -83,7 +84,7 @@ fn results<T: Parts>(
     chain: &Chain,
     program: &Program,
     routine: &Routine,
-    run: impl Fn(&Routine, &mut Machine<T>, &Arguments<'_, T>, &mut [T]),
+    run: impl Fn(&Routine, &mut Machine<T>, &Environment<'_, T>, &mut [T]),
 ) -> Vec<f64> {
     let n = chain.coordinates.len();
     let factors = program.function(FunctionId::Factorise).map_or(0, |function| function.shape.len());
@@ -99,24 +100,24 @@ fn results<T: Parts>(
         v: &waves(n, zero, 0.4, 0.7),
         a: &waves(n, zero, 0.4, 2.9),
         r: &waves(n, zero, 100.0, 2.1),
-        multiplier: &[],
         positions: &waves(n, guess, 0.05, 1.1),
+    };
+    let environment = Environment {
         added_inertia: &waves(n, |_| 2.0, 0.5, 0.9),
         base: &base,
         factors: &waves(factors, |_| 1.5, 1.0, 0.37),
-        version: 0,
-        parameters: &[],
         inputs: &waves(2 * chain.inputs.len(), |_| 0.5, 0.2, 1.0),
+        ..arguments.into()
     };
     let mut out = vec![T::splat(f64::NAN); routine.results()];
     // A machine that ran before, with other parameters.
     let others: Vec<T> = defaults.iter().map(|p| T::splat(1.5 * p + 0.1)).collect();
     let mut machine = routine.machine(&others);
-    run(routine, &mut machine, &arguments, &mut out);
+    run(routine, &mut machine, &environment, &mut out);
     routine.set_parameters(&mut machine, &parameters);
     // Twice: registers and frames keep nothing from call to call.
     for _ in 0..2 {
-        run(routine, &mut machine, &arguments, &mut out);
+        run(routine, &mut machine, &environment, &mut out);
     }
     out.iter().flat_map(|number| (0..T::PARTS).map(|part| number.part(part)).collect::<Vec<_>>()).collect()
 }

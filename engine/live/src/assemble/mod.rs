@@ -62,19 +62,19 @@ mod tests {
     use crane_codegen::chain::Analyses;
     use crane_codegen::mechanics;
     use crane_codegen::program::FunctionId;
-    use crane_model::dyn_crane::DynCrane;
+    use crane_model::dyn_crane::{Arguments, DynCrane};
 
     use super::*;
     use crate::LiveCrane;
     use crate::bytecode::{Instructions, Operands, WideInstruction};
-    use crate::machine::{Arguments, Machine};
+    use crate::machine::{Environment, Machine};
 
     /// The results of a function for arbitrary numbers in place of live parameters and what follows from them, and its registers.
-    fn results(code: &Code, arguments: &Arguments<'_, f64>) -> (Vec<u64>, usize) {
+    fn results(code: &Code, environment: &Environment<'_, f64>) -> (Vec<u64>, usize) {
         let mut machine = Machine::new(code);
         machine.fix(code, |index| 1.0 + index as f64, |index| 0.5 + 0.1 * index as f64);
         let mut out = vec![f64::NAN; code.results];
-        machine.run(code, arguments, &mut out);
+        machine.run(code, environment, &mut out);
         assert!(out.iter().all(|x| x.is_finite()));
         (out.into_iter().map(f64::to_bits).collect(), code.registers)
     }
@@ -98,8 +98,8 @@ mod tests {
                 registers: 70_000,
                 ..narrow.clone()
             };
-            let arguments = Arguments { q: &q, v: &q, a: &q, positions: &q, ..Arguments::none() };
-            assert_eq!(results(&narrow, &arguments).0, results(&wide, &arguments).0, "{id:?}");
+            let environment = Arguments { q: &q, v: &q, a: &q, positions: &q, ..Arguments::none() }.into();
+            assert_eq!(results(&narrow, &environment).0, results(&wide, &environment).0, "{id:?}");
         }
     }
 
@@ -124,8 +124,8 @@ mod tests {
         let entries = function.shape.entries(Layout::Columns);
         let [derived, by_result] = [Order::Derivation, Order::Results].map(|order| {
             let line = AssembledLine::new(&graph, &selection, &function.outputs, &entries, order);
-            let arguments = Arguments { q: &q, v: &q, a: &q, positions: &q, ..Arguments::none() };
-            results(&registers::assign(&line), &arguments)
+            let environment = Arguments { q: &q, v: &q, a: &q, positions: &q, ..Arguments::none() }.into();
+            results(&registers::assign(&line), &environment)
         });
         assert_eq!(derived.0, by_result.0);
         assert!(by_result.1 < derived.1, "{} registers instead of {}", by_result.1, derived.1);

@@ -4,17 +4,17 @@ use std::sync::{Mutex, PoisonError};
 
 use crane_codegen::chain::Input;
 use crane_codegen::program::{Extent, FunctionId, Item};
-use crane_model::dyn_crane::{DynBlock, DynCrane, DynSystem};
-use crane_model::nalgebra::Matrix4;
+use crane_model::dyn_crane::{Arguments, Derived, DynBlock, DynCrane, DynSystem};
 use crane_model::rt::lanes::f64x8;
-use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo, entry_type, slice_argument};
-use crane_quantities::{Count, Part, quantities};
+use crane_model::{Description, LoopJointInfo, ParameterError, StageInfo};
+use crane_quantities::{Count, Part};
 use wide::bytemuck::{cast_slice, cast_slice_mut};
 
 use super::LiveCrane;
-use super::methods::{method, methods};
+use super::systems::Ready;
+use crate::evaluation::Evaluation;
 use crate::inputs::{is_free, slots_of};
-use crate::machine::{Arguments, Batch, Machine};
+use crate::machine::{Batch, Environment};
 use crate::routine::Routine;
 
 /// Number of cranes.
@@ -30,32 +30,35 @@ pub(super) struct Fleet {
     parameters: Vec<f64x8>,
     inputs: Vec<f64x8>,
     /// Workspaces for calls.
-    rooms: [Mutex<Option<Room>>; FunctionId::ALL.len()],
+    rooms: [Mutex<Option<Room>>; FunctionId::COUNT],
 }
 
 /// What a call of a function needs.
 struct Room {
-    machine: Machine<f64x8>,
+    evaluation: Evaluation<f64x8>,
     given: Given,
     results: Vec<f64x8>,
 }
 
 /// Arguments, as vectors.
 #[derive(Default)]
-struct Given([Vec<f64x8>; 8]);
+struct Given([Vec<f64x8>; 5]);
 
 impl Given {
-    /// Takes arguments apart from live parameters and inputs.
-    fn take<'g>(&'g mut self, arguments: &Arguments<'_, f64>, inputs: &'g [f64x8]) -> Arguments<'g, f64x8> {
-        let &Arguments { t, q, v, a, r, positions, added_inertia, base, factors, .. } = arguments;
-        for (vectors, numbers) in self.0.iter_mut().zip([q, v, a, r, positions, added_inertia, base, factors]) {
-            vectors.resize(numbers.len() / CRANES, f64x8::splat(0.0));
-            cast_slice_mut(vectors).copy_from_slice(numbers);
+    fn take(&mut self, arguments: &Arguments<'_>) -> Arguments<'_, f64x8> {
+        let &Arguments { t, q, v, a, r, positions } = arguments;
+        for (vectors, numbers) in self.0.iter_mut().zip([q, v, a, r, positions]) {
+            take(numbers, vectors);
         }
-        let [q, v, a, r, positions, added_inertia, base, factors] = self.0.each_ref().map(Vec::as_slice);
-        let t = f64x8::splat(t);
-        Arguments { t, q, v, a, r, positions, added_inertia, base, factors, inputs, ..Arguments::none() }
+        let [q, v, a, r, positions] = self.0.each_ref().map(Vec::as_slice);
+        Arguments { t: f64x8::splat(t), q, v, a, r, positions }
     }
+}
+
+/// Numbers of all cranes, as vectors.
+fn take(numbers: &[f64], vectors: &mut Vec<f64x8>) {
+    vectors.resize(numbers.len() / CRANES, f64x8::splat(0.0));
+    cast_slice_mut(vectors).copy_from_slice(numbers);
 }
 
 impl Fleet {
@@ -77,91 +80,73 @@ impl Fleet {
         }
     }
 
-    /// Calls a function and passes its results to `show`; `None` if the cranes do not need the function.
-    fn call<R>(&self, id: FunctionId, arguments: &Arguments<'_, f64>, show: impl FnOnce(&[f64x8]) -> R) -> Option<R> {
-        let routine = self.crane.library.routine(id)?;
+    /// Lends the workspace of a function.
+    fn with_room<R>(&self, id: FunctionId, compute: impl FnOnce(&mut Room) -> R) -> R {
         let mut room = self.rooms[id as usize].lock().unwrap_or_else(PoisonError::into_inner);
-        let Room { machine, given, results } = room.get_or_insert_with(|| self.room(routine));
-        routine.run(machine, &given.take(arguments, &self.inputs), results);
-        Some(show(results))
+        compute(room.get_or_insert_with(|| {
+            let mut evaluation = Evaluation::new(&self.crane, id);
+            evaluation.set_parameters(&self.parameters);
+            evaluation.set_inputs(self.inputs.iter().copied());
+            let results = vec![f64x8::splat(0.0); evaluation.width()];
+            Room { evaluation, given: Given::default(), results }
+        }))
     }
 
-    fn room(&self, routine: &Routine) -> Room {
-        let results = vec![f64x8::splat(0.0); routine.results()];
-        Room { machine: routine.machine(&self.parameters), given: Given::default(), results }
-    }
-
-    /// The sum over all cranes.
-    fn scalar(&self, id: FunctionId, arguments: &Arguments<'_, f64>) -> f64 {
-        let sum = |results: &[f64x8]| results.first().map(|number| number.reduce_add());
-        self.call(id, arguments, sum).flatten().unwrap_or(0.0)
-    }
-
-    /// Numbers of all cranes; NaN instead of matrices, whose sizes are other ones.
-    fn numbers(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [f64]) {
-        if id.extent() == Extent::Matrix {
-            return out.fill(f64::NAN);
-        }
-        let called = self.call(id, arguments, |results| match cast_slice(results) {
-            numbers if numbers.len() == out.len() => out.copy_from_slice(numbers),
-            _ => out.fill(f64::NAN),
-        });
-        if called.is_none() {
-            out.fill(0.0);
-        }
-    }
-
-    /// A list, zeros if the cranes do not need the function.
-    fn list<T: Entry>(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [T]) {
+    /// Writes results for each crane apart.
+    fn write(&self, id: FunctionId, results: &[f64x8], out: &mut [f64]) {
         let Description { drives, loads, connectors, .. } = &self.crane.description;
-        let called = self.call(id, arguments, |results| match id.extent() {
-            Extent::List(Item::Row, _) => {
-                out.iter_mut().zip(cast_slice(results)).for_each(|(out, number)| *out = T::from_numbers(&[*number]));
-            }
-            Extent::List(_, Count::WinchPieces) => {
-                spread(results, connectors.iter().map(|connector| connector.pieces), out);
-            }
-            Extent::List(_, Count::Attachments) => {
+        match id.extent() {
+            // The sum over all cranes.
+            Extent::Number => out.fill(results.iter().map(|number| number.reduce_add()).sum()),
+            Extent::List(item, count) if item != Item::Row => {
                 let ends = self.crane.loop_joints.iter().map(|joint| joint.ends.iter().flatten().count());
-                spread(results, connectors.iter().map(|connector| connector.points.len()).chain(ends), out);
+                let len = item.numbers();
+                match count {
+                    Count::WinchPieces => {
+                        spread(results, connectors.iter().map(|connector| connector.pieces), len, out)
+                    }
+                    Count::Attachments => {
+                        let points = connectors.iter().map(|connector| connector.points.len());
+                        spread(results, points.chain(ends), len, out);
+                    }
+                    Count::DrivePieces => spread(results, drives.iter().map(|drive| drive.pieces), len, out),
+                    Count::LoadPieces => spread(results, loads.iter().map(|load| load.pieces), len, out),
+                    _ => spread(results, std::iter::repeat(1), len, out),
+                }
             }
-            Extent::List(_, Count::DrivePieces) => spread(results, drives.iter().map(|drive| drive.pieces), out),
-            Extent::List(_, Count::LoadPieces) => spread(results, loads.iter().map(|load| load.pieces), out),
-            _ => spread(results, std::iter::repeat(1), out),
-        });
-        if called.is_none() {
-            out.fill(T::repeat(0.0));
+            _ => out.iter_mut().zip(cast_slice(results)).for_each(|(out, number)| *out = *number),
         }
-    }
-
-    fn matrices(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [Matrix4<f64>]) {
-        self.call(id, arguments, |results| match id {
-            FunctionId::Transforms => spread(results, std::iter::repeat(1), out),
-            _ => out.fill(Matrix4::repeat(f64::NAN)),
-        });
     }
 }
 
-/// Takes a list for each crane apart: of each part of a crane, which has some items, those of the first crane come first.
-fn spread<T: Entry>(results: &[f64x8], parts: impl Iterator<Item = usize>, out: &mut [T]) {
+/// Takes a list of items of `len` numbers for each crane apart: of each part of a crane, which has some items, those of the first crane come first.
+fn spread(results: &[f64x8], parts: impl Iterator<Item = usize>, len: usize, out: &mut [f64]) {
     let mut first = 0;
     for count in parts {
-        let items = results.get(first * T::LEN..(first + count) * T::LEN);
-        let places = out.get_mut(CRANES * first..CRANES * (first + count));
+        let items = results.get(first * len..(first + count) * len);
+        let places = out.get_mut(CRANES * first * len..CRANES * (first + count) * len);
         let (Some(items), Some(places)) = (items, places) else { break };
-        for (index, entry) in places.iter_mut().enumerate() {
-            let mut numbers = [0.0; 16];
-            let item = &items[index % count * T::LEN..][..T::LEN];
-            numbers.iter_mut().zip(item).for_each(|(number, vector)| *number = vector.lane(index / count));
-            *entry = T::from_numbers(&numbers);
+        for (index, entry) in places.chunks_exact_mut(len).enumerate() {
+            let item = &items[index % count * len..][..len];
+            entry.iter_mut().zip(item).for_each(|(number, vector)| *number = vector.lane(index / count));
         }
         first += count;
     }
 }
 
 impl DynCrane for Fleet {
-    fn parts(&self) -> &[Part] {
-        &[Part::Common, Part::Dynamics, Part::Systems, Part::StepMatrices, Part::Statics, Part::InternalForces]
+    fn call(&self, id: FunctionId, arguments: &Arguments<'_>, out: &mut [f64]) -> Derived {
+        // Matrices and derivatives of a fleet would have other sizes.
+        if id.extent() == Extent::Matrix || id.part().is_in(&[Part::Modes, Part::Derivatives, Part::MotionDerivatives])
+        {
+            out.fill(f64::NAN);
+            return Derived::No;
+        }
+        self.with_room(id, |Room { evaluation, given, results }| {
+            let derived = evaluation.evaluate(&given.take(arguments), results);
+            self.write(id, results, out);
+            derived
+        })
     }
 
     fn description(&self) -> &Description {
@@ -203,7 +188,8 @@ impl DynCrane for Fleet {
     }
 
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
-        self.call(FunctionId::PrescribedMotions, &Arguments { t, ..Arguments::none() }, |results| {
+        self.with_room(FunctionId::PrescribedMotions, |Room { evaluation, given, results }| {
+            evaluation.evaluate(&given.take(&Arguments { t, ..Arguments::none() }), results);
             for (drive, [position, rate]) in self.crane.chain().rigid_drives().zip(results.as_chunks().0) {
                 let places = CRANES * drive.coordinate.0..CRANES * (drive.coordinate.0 + 1);
                 q[places.clone()].copy_from_slice(position.as_array());
@@ -215,19 +201,17 @@ impl DynCrane for Fleet {
     fn system(&self) -> Box<dyn DynSystem + '_> {
         let ready = |id: FunctionId| {
             let routine = self.crane.library.routine(id)?;
-            Some((routine, self.room(routine)))
+            Some((routine, routine.machine(&self.parameters)))
         };
-        let mut factorise = ready(FunctionId::Factorise);
-        if let Some((_, Room { results, .. })) = &mut factorise {
-            results.fill(f64x8::splat(f64::NAN));
-        }
-        Box::new(FleetSystem { factorise, solve: ready(FunctionId::Solve), version: 1 })
-    }
-
-    fn linearise(&self, _: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]) {
-        for matrix in [mass, stiffness, damping] {
-            matrix.fill(f64::NAN);
-        }
+        let factors = self.crane.library.routine(FunctionId::Factorise).map_or(0, Routine::results);
+        Box::new(FleetSystem {
+            factorise: ready(FunctionId::Factorise),
+            solve: ready(FunctionId::Solve),
+            factors: vec![f64x8::splat(f64::NAN); factors],
+            given: Default::default(),
+            solution: vec![],
+            version: 1,
+        })
     }
 
     fn block(&self, _: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
@@ -272,46 +256,38 @@ impl DynCrane for Fleet {
             rooms: no_rooms(),
         })
     }
-
-    fn dynamic_residual_derivatives(&self, _: f64, _: &[f64], _: &[f64], _: &[f64], out: &mut [f64]) {
-        out.fill(f64::NAN);
-    }
-
-    fn inverse_mass_matrix(&self, _: &[f64], out: &mut [f64]) {
-        out.fill(f64::NAN);
-    }
-
-    fn forward_dynamics_derivatives(&self, _: f64, _: &[f64], _: &[f64], out: &mut [f64]) {
-        out.fill(f64::NAN);
-    }
-
-    quantities! { methods }
 }
 
 /// Linear systems of all cranes.
 struct FleetSystem<'a> {
-    factorise: Option<(&'a Routine, Room)>,
-    solve: Option<(&'a Routine, Room)>,
+    factorise: Ready<'a, f64x8>,
+    solve: Ready<'a, f64x8>,
+    factors: Vec<f64x8>,
+    given: [Vec<f64x8>; 3],
+    solution: Vec<f64x8>,
     /// The number of the factors.
     version: u64,
 }
 
 impl DynSystem for FleetSystem<'_> {
     fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
-        if let Some((routine, Room { machine, given, results })) = &mut self.factorise {
-            let arguments = Arguments { q, added_inertia, base, ..Arguments::none() };
-            routine.run(machine, &given.take(&arguments, &[]), results);
+        if let Some((routine, machine)) = &mut self.factorise {
+            self.given.iter_mut().zip([q, added_inertia, base]).for_each(|(vectors, numbers)| take(numbers, vectors));
+            let [q, added_inertia, base] = &self.given;
+            let at = Arguments { q, ..Arguments::none() };
+            routine.run(machine, &Environment { added_inertia, base, ..at.into() }, &mut self.factors);
             self.version += 1;
         }
     }
 
     fn solve(&mut self, r: &[f64], out: &mut [f64]) {
-        if let Some((routine, Room { machine, given, results })) = &mut self.solve {
-            let factors = self.factorise.as_ref().map_or(&[][..], |(_, room)| &room.results);
-            let arguments = Arguments { r, ..Arguments::none() };
-            let own = given.take(&arguments, &[]);
-            routine.run(machine, &Arguments { factors, version: self.version, ..own }, results);
-            out.copy_from_slice(cast_slice(results));
+        if let Some((routine, machine)) = &mut self.solve {
+            let Self { factors, version, given: [given, ..], solution, .. } = self;
+            take(r, given);
+            solution.resize(given.len(), f64x8::splat(0.0));
+            let at = Arguments { r: given, ..Arguments::none() };
+            routine.run(machine, &Environment { factors, version: *version, ..at.into() }, solution);
+            out.copy_from_slice(cast_slice(solution));
         }
     }
 }
@@ -325,6 +301,6 @@ impl DynBlock for Nothing {
     }
 }
 
-fn no_rooms() -> [Mutex<Option<Room>>; FunctionId::ALL.len()] {
+fn no_rooms() -> [Mutex<Option<Room>>; FunctionId::COUNT] {
     std::array::from_fn(|_| Mutex::new(None))
 }

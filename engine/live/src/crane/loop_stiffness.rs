@@ -1,12 +1,11 @@
 //! What loops that transmit forces add to the stiffness.
 
 use crane_codegen::program::FunctionId;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{Arguments, DynCrane};
 
 use crate::LiveCrane;
 use crate::dual::{DIRECTIONS, Dual8};
-use crate::machine::Number;
-use crate::rows::Evaluation;
+use crate::evaluation::Evaluation;
 
 /// Numbers, of which some from the `first` one on have slopes, each in a direction of its own.
 fn numbers(values: &[f64], first: usize) -> Vec<Dual8> {
@@ -17,11 +16,10 @@ fn numbers(values: &[f64], first: usize) -> Vec<Dual8> {
 /// `∂(Jᵀ λ)/∂q`, column by column.
 pub fn loop_stiffness(crane: &LiveCrane, q: &[f64], multipliers: &[f64], out: &mut [f64]) {
     let n = crane.size();
-    let (mut jacobians, rest) =
-        (Evaluation::<Dual8>::new(crane, FunctionId::LoopJacobians), vec![Dual8::splat(0.0); n]);
+    let mut jacobians = Evaluation::<Dual8>::new(crane, FunctionId::LoopJacobians);
     out.fill(0.0);
     for first in (0..n).step_by(DIRECTIONS) {
-        let rows = jacobians.at(Dual8::splat(0.0), &numbers(q, first), &rest, &rest);
+        let rows = jacobians.at(&Arguments { q: &numbers(q, first), ..Arguments::none() });
         for (multiplier, row) in multipliers.iter().zip(rows.chunks_exact(n)) {
             for (direction, column) in out.chunks_exact_mut(n).skip(first).take(DIRECTIONS).enumerate() {
                 column.iter_mut().zip(row).for_each(|(sum, entry)| *sum += multiplier * entry.slope(direction));

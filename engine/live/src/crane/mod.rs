@@ -2,7 +2,6 @@
 
 mod fleet;
 mod loop_stiffness;
-mod methods;
 mod model;
 pub mod rows;
 mod systems;
@@ -11,19 +10,15 @@ use std::fmt;
 use std::sync::{Arc, Mutex, TryLockError};
 
 use crane_codegen::chain::{Chain, Input};
-use crane_codegen::program::{FunctionId, Shape};
+use crane_codegen::program::FunctionId;
 use crane_codegen::{Diagnostics, SourceFile, compile};
 use crane_model::dyn_crane::DynCrane;
-use crane_model::nalgebra::Matrix4;
 use crane_model::rt::derivatives::Link;
-use crane_model::rt::fill_tangent;
-use crane_model::{Description, Entry, LoopJointInfo, ParameterError, StageInfo, fill_links};
+use crane_model::{Description, LoopJointInfo, ParameterError, StageInfo, fill_links};
 
-use crate::expansion::{mass_matrix, second_derivatives};
+use crate::evaluation::Evaluation;
 use crate::inputs::{Inputs, slots_of};
 use crate::library::Library;
-use crate::machine::{Arguments, Machine};
-use crate::routine::Routine;
 
 /// A crane of any number of coordinates that is ready without rustc.
 ///
@@ -41,15 +36,7 @@ pub struct LiveCrane {
 }
 
 /// A workspace for each function, once it was called: a call holds its lock, and has a workspace of its own while another thread does.
-type Rooms = Arc<[Mutex<Option<Room>>; FunctionId::ALL.len()]>;
-
-/// What a call of a function needs besides its arguments.
-struct Room {
-    machine: Machine<f64>,
-    inputs: Vec<f64>,
-    /// For results that are copied to other positions.
-    results: Vec<f64>,
-}
+type Rooms = Arc<[Mutex<Option<Evaluation<f64>>>; FunctionId::COUNT]>;
 
 impl LiveCrane {
     /// Coordinates of the largest crane: `solve` takes 49,144 of the 65,536 registers of narrow bytecode at 3,013.
@@ -96,14 +83,8 @@ impl LiveCrane {
         self.library.chain()
     }
 
-    /// Calls a function and passes its results to `show`; `None` if the crane does not need the function.
-    fn call<R>(
-        &self,
-        id: FunctionId,
-        arguments: &Arguments<'_, f64>,
-        show: impl FnOnce(&Routine, &mut [f64]) -> R,
-    ) -> Option<R> {
-        let routine = self.library.routine(id)?;
+    /// Lends the workspace of a function, with the inputs as they are now.
+    fn with_evaluation<R>(&self, id: FunctionId, compute: impl FnOnce(&mut Evaluation<f64>) -> R) -> R {
         let kept = match self.rooms[id as usize].try_lock() {
             Ok(kept) => Some(kept),
             Err(TryLockError::Poisoned(kept)) => Some(kept.into_inner()),
@@ -112,11 +93,9 @@ impl LiveCrane {
         };
         let (mut kept, mut own) = (kept, None);
         let room = kept.as_deref_mut().unwrap_or(&mut own);
-        let Room { machine, inputs, results } = room.get_or_insert_with(|| self.room(routine));
-        inputs.clear();
-        inputs.extend(self.inputs.numbers());
-        routine.run(machine, &Arguments { inputs, ..*arguments }, results);
-        Some(show(routine, results))
+        let evaluation = room.get_or_insert_with(|| Evaluation::new(self, id));
+        evaluation.set_inputs(self.inputs.numbers());
+        compute(evaluation)
     }
 
     /// The live parameters, in the order of the description.
@@ -189,26 +168,6 @@ impl LiveCrane {
         Ok(parameters)
     }
 
-    fn room(&self, routine: &Routine) -> Room {
-        Room { machine: routine.machine(&self.parameters), inputs: Vec::new(), results: vec![0.0; routine.results()] }
-    }
-
-    fn scalar(&self, id: FunctionId, arguments: &Arguments<'_, f64>) -> f64 {
-        self.call(id, arguments, |_, results| results.first().copied().unwrap_or(0.0)).unwrap_or(0.0)
-    }
-
-    /// Numbers, zeros if the crane does not need the function.
-    fn numbers(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [f64]) {
-        let called = self.call(id, arguments, |routine, results| match routine.shape() {
-            Shape::Columns { points, .. } => mass_matrix(points, results, out),
-            Shape::Tangent { segments, entries, .. } => fill_tangent(segments, entries, (results, 0.0), out),
-            _ => copy(results, out),
-        });
-        if called.is_none() {
-            out.fill(0.0);
-        }
-    }
-
     /// What its coordinates are attached to.
     pub(crate) fn links(&self) -> Vec<Link> {
         let mut links = vec![Link::default(); self.size()];
@@ -227,23 +186,6 @@ impl LiveCrane {
         );
         grows && self.chain().coordinates.len() > Self::MOST_COORDINATES_OF_DERIVATIVES
     }
-
-    /// A list, zeros if the crane does not need the function.
-    fn list<T: Entry>(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [T]) {
-        let called = self.call(id, arguments, |_, results| copy_entries(results, out));
-        if called.is_none() {
-            out.fill(T::repeat(if self.is_too_large_for(id) { f64::NAN } else { 0.0 }));
-        }
-    }
-
-    fn matrices(&self, id: FunctionId, arguments: &Arguments<'_, f64>, out: &mut [Matrix4<f64>]) {
-        self.call(id, arguments, |routine, results| match routine.shape() {
-            Shape::TransformFactors { degrees, rotations, vectors } => {
-                second_derivatives(degrees, rotations.len(), vectors, results, out);
-            }
-            _ => copy_entries(results, out),
-        });
-    }
 }
 
 fn no_rooms() -> Rooms {
@@ -257,15 +199,6 @@ fn not_set(chain: &Chain) -> Inputs {
 
 fn copy(results: &[f64], out: &mut [f64]) {
     out.iter_mut().zip(results).for_each(|(place, result)| *place = *result);
-}
-
-fn copy_entries<T: Entry>(results: &[f64], out: &mut [T]) {
-    out.iter_mut().zip(results.chunks_exact(T::LEN)).for_each(|(entry, numbers)| *entry = T::from_numbers(numbers));
-}
-
-/// A pose.
-fn at(q: &[f64]) -> Arguments<'_, f64> {
-    Arguments { q, ..Arguments::none() }
 }
 
 impl Clone for LiveCrane {

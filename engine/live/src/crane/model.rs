@@ -2,26 +2,19 @@
 
 use crane_codegen::chain::BodyId;
 use crane_codegen::program::FunctionId;
-use crane_model::dyn_crane::{DynBlock, DynCrane, DynSystem};
-use crane_model::nalgebra::Matrix4;
-use crane_model::rt::derivatives::EightColumns;
-use crane_model::{Description, LoopJointInfo, ParameterError, StageInfo, entry_type, slice_argument};
-use crane_quantities::{Count, Part, quantities};
+use crane_model::dyn_crane::{Arguments, Derived, DynBlock, DynCrane, DynSystem};
+use crane_model::{Description, LoopJointInfo, ParameterError, StageInfo};
 
 use super::fleet::Fleet;
 use super::loop_stiffness::loop_stiffness;
-use super::methods::{method, methods};
 use super::systems::{Block, LiveSystem};
-use super::{LiveCrane, at, copy, no_rooms};
-use crate::derivatives::Storage;
+use super::{LiveCrane, no_rooms};
 use crate::inputs::{is_free, slots_of};
-use crate::machine::Arguments;
 use crate::native::is_slower_in_lanes;
-use crate::routine::Routine;
 
 impl DynCrane for LiveCrane {
-    fn parts(&self) -> &[Part] {
-        &Part::ALL
+    fn call(&self, id: FunctionId, arguments: &Arguments<'_>, out: &mut [f64]) -> Derived {
+        self.with_evaluation(id, |evaluation| evaluation.call(arguments, out))
     }
 
     fn description(&self) -> &Description {
@@ -59,8 +52,9 @@ impl DynCrane for LiveCrane {
     }
 
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
-        self.call(FunctionId::PrescribedMotions, &Arguments { t, ..Arguments::none() }, |_, results| {
-            for (drive, [position, rate]) in self.chain().rigid_drives().zip(results.as_chunks().0) {
+        self.with_evaluation(FunctionId::PrescribedMotions, |motions| {
+            let motions = motions.at(&Arguments { t, ..Arguments::none() });
+            for (drive, [position, rate]) in self.chain().rigid_drives().zip(motions.as_chunks().0) {
                 (q[drive.coordinate.0], v[drive.coordinate.0]) = (*position, *rate);
             }
         });
@@ -101,46 +95,4 @@ impl DynCrane for LiveCrane {
     fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
         Ok(Box::new(Block::new(self, parameters)?))
     }
-
-    fn linearise(&self, q: &[f64], mass: &mut [f64], stiffness: &mut [f64], damping: &mut [f64]) {
-        self.call(FunctionId::Linearise, &at(q), |_, results| {
-            let mut rest: &[f64] = results;
-            for matrix in [mass, stiffness, damping] {
-                let (own, others) = rest.split_at(matrix.len().min(rest.len()));
-                copy(own, matrix);
-                rest = others;
-            }
-        });
-    }
-
-    fn dynamic_residual_derivatives(&self, t: f64, q: &[f64], v: &[f64], a: &[f64], out: &mut [f64]) {
-        let mut factors = vec![0.0; Count::RESIDUAL_FACTORS * q.len()];
-        self.residual_factors(q, v, a, &mut factors);
-        self.force_derivatives(t, q, v, out);
-        Storage::<EightColumns>::new(self.links()).residual_derivatives(&factors, out);
-    }
-
-    fn inverse_mass_matrix(&self, q: &[f64], out: &mut [f64]) {
-        let mut factors = vec![0.0; Count::MASS_FACTORS * q.len()];
-        self.mass_factors(q, &mut factors);
-        Storage::<EightColumns>::new(self.links()).inverse_mass_matrix(&factors, out);
-    }
-
-    fn forward_dynamics_derivatives(&self, t: f64, q: &[f64], v: &[f64], out: &mut [f64]) {
-        let n = q.len();
-        let mut a = vec![0.0; n];
-        self.forward_dynamics(t, q, v, &mut a);
-        let [mut of_residual, mut of_mass] =
-            [Count::RESIDUAL_FACTORS, Count::MASS_FACTORS].map(|count| vec![0.0; count * n]);
-        self.residual_factors(q, v, &a, &mut of_residual);
-        self.mass_factors(q, &mut of_mass);
-        let mut forces = vec![0.0; 2 * n * n];
-        self.force_derivatives(t, q, v, &mut forces);
-        let library = self.library();
-        let places = library.routine(FunctionId::ForceDerivatives).map_or(&[][..], Routine::places);
-        let factors = [&*of_residual, &of_mass];
-        Storage::<EightColumns>::new(self.links()).forward_dynamics_derivatives(factors, (&forces, places), out);
-    }
-
-    quantities! { methods }
 }

@@ -4,18 +4,13 @@
 //! whatever the other rows contain.
 
 use std::ops::Range;
-use std::sync::Arc;
 
-use crane_codegen::program::{Argument, Count, Extent, FunctionId, Shape};
-use crane_model::dyn_crane::DynCrane;
-use crane_model::rt::derivatives::Columns;
-use crane_model::rt::fill_tangent;
+use crane_codegen::program::{Count, Extent, FunctionId};
+use crane_model::dyn_crane::{Arguments, DynCrane};
 
 use crate::LiveCrane;
-use crate::derivatives::Storage;
-use crate::expansion::mass_matrix;
-use crate::library::Library;
-use crate::machine::{Arguments, Batch, Machine, Number};
+use crate::evaluation::Evaluation;
+use crate::machine::{Batch, Number};
 use crate::routine::Routine;
 
 /// States and parameters, row after row. A list of one row applies to all rows; missing parameters are those of the crane.
@@ -33,86 +28,47 @@ pub struct ParameterRows<'a> {
     pub parameters: &'a [f64],
 }
 
-/// Workspace to compute a function of many rows, as many at a time as `T` has lanes. Matrices are written row by row.
-pub struct Evaluation<T: Number> {
-    library: Arc<Library>,
-    function: FunctionId,
+/// Workspace to compute a function of many rows, as many at a time as `T` has lanes. Matrices are written row by row; functions of drives at rest have
+/// them where they are at the state's time.
+#[derive(Debug)]
+pub struct BatchEvaluation<T: Number> {
+    evaluation: Evaluation<T>,
     width: usize,
     /// Numbers of coordinates and of live parameters.
     sizes: [usize; 2],
-    /// The routines that it needs.
-    calls: [Option<Call<T>>; 4],
     /// The states that are evaluated.
     lanes: Lanes<T>,
-    /// The coordinates of the drives.
-    driven: Vec<usize>,
-    /// For derivatives of the dynamics, the factors of A⁻¹ and of the derivatives of the residual, and the derivatives of forces.
-    storage: Storage<T::Columns>,
-    factors: [Vec<T>; 2],
-    forces: Vec<T>,
-    /// The crane's inputs.
-    inputs: Vec<T>,
-    /// The results of the states.
+    /// The results of the states, and the same in the order of rows, where it is another one.
     results: Vec<T>,
-    /// The result of a function that the crane does not have: zero if it needs none, NaN if it is too large.
-    absent: f64,
+    placed: Vec<T>,
+    /// The index of each number of a row in the results; `None`: zero.
+    places: Option<Vec<Option<usize>>>,
 }
 
 /// Some states.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Lanes<T> {
     t: Vec<T>,
     q: Vec<T>,
     v: Vec<T>,
     a: Vec<T>,
-    /// Positions of the drives, by coordinate, for functions at rest.
-    positions: Vec<T>,
     parameters: Vec<T>,
 }
 
-/// A function with a workspace for its calls.
-#[derive(Debug)]
-struct Call<T> {
-    id: FunctionId,
-    machine: Machine<T>,
-    factors: Vec<T>,
-    /// The index of each number of the result in the function's output; `None`: zero.
-    places: Option<Vec<Option<usize>>>,
-}
-
-impl<T: Number> Evaluation<T> {
+impl<T: Batch> BatchEvaluation<T> {
     /// Workspace for a function of a crane, with its parameters.
     #[must_use]
     pub fn new(crane: &LiveCrane, function: FunctionId) -> Self {
-        use FunctionId as F;
-        let ids = match function {
-            F::DynamicResidualDerivatives => [Some(F::ForceDerivatives), Some(F::ResidualFactors), None, None],
-            F::InverseMassMatrix => [Some(F::MassFactors), None, None, None],
-            F::ForwardDynamicsDerivatives => {
-                [F::ForwardDynamics, F::ForceDerivatives, F::ResidualFactors, F::MassFactors].map(Some)
-            }
-            // The drives are where they are at the state's time.
-            id if id.arguments().contains(&Argument::DrivePositions) => [Some(id), Some(F::DriveMotions), None, None],
-            id => [Some(id), None, None, None],
-        };
-        let width = crane.shape(function).iter().product();
-        let multiplies =
-            matches!(function, F::DynamicResidualDerivatives | F::InverseMassMatrix | F::ForwardDynamicsDerivatives);
-        let links = if multiplies { crane.links() } else { vec![] };
+        let evaluation = Evaluation::new(crane, function);
+        let places = places(crane, crane.size(), function);
         Self {
-            library: crane.library(),
-            function,
-            width,
+            width: places.as_ref().map_or(evaluation.width(), Vec::len),
             sizes: [crane.size(), crane.parameters().len()],
-            calls: ids.map(|id| Call::new(crane, id?)),
-            lanes: Lanes::new(),
-            storage: Storage::new(links),
-            factors: [vec![], vec![]],
-            forces: vec![T::splat(0.0); if function == F::ForwardDynamicsDerivatives { 2 * width / 3 } else { 0 }],
-            driven: crane.description().drives.iter().map(|drive| drive.coordinate).collect(),
-            inputs: crane.inputs().numbers().map(T::splat).collect(),
-            results: vec![T::splat(0.0); width],
-            absent: if crane.is_too_large_for(function) { f64::NAN } else { 0.0 },
+            lanes: Lanes { t: vec![], q: vec![], v: vec![], a: vec![], parameters: vec![] },
+            results: vec![T::splat(0.0); evaluation.width()],
+            placed: vec![],
+            places,
+            evaluation,
         }
     }
 
@@ -122,117 +78,30 @@ impl<T: Number> Evaluation<T> {
         self.width
     }
 
-    /// Other live parameters, all of them.
-    pub(crate) fn set_parameters(&mut self, parameters: &[T]) {
-        for call in self.calls.iter_mut().flatten() {
-            call.set_parameters(&self.library, parameters);
-        }
-    }
-
-    /// Other inputs, three numbers each.
-    pub(crate) fn set_inputs(&mut self, inputs: &[T]) {
-        self.inputs.clear();
-        self.inputs.extend_from_slice(inputs);
-    }
-
-    /// Computes products with A⁻¹ of the states taken, one state after the other, if the function is of these.
-    fn multiply(&mut self, out: &mut [<T::Columns as Columns>::Lane]) -> bool {
-        let Self { calls, lanes, inputs, library, storage, factors: [of_mass, of_residual], forces, .. } = self;
-        match (self.function, calls) {
-            (FunctionId::InverseMassMatrix, [Some(mass), ..]) => {
-                mass.write_factors(library, lanes, inputs, of_mass);
-                storage.inverse_mass_matrix(of_mass, out);
-            }
-            (
-                FunctionId::ForwardDynamicsDerivatives,
-                [Some(accelerations), Some(slopes), Some(residual), Some(mass)],
-            ) => {
-                let mut a = std::mem::take(&mut lanes.a);
-                accelerations.write_factors(library, lanes, inputs, &mut a);
-                lanes.a = a;
-                slopes.run(library, lanes, inputs, forces);
-                residual.write_factors(library, lanes, inputs, of_residual);
-                mass.write_factors(library, lanes, inputs, of_mass);
-                let places = library.routine(FunctionId::ForceDerivatives).map_or(&[][..], Routine::places);
-                storage.forward_dynamics_derivatives([of_residual, of_mass], (forces, places), out);
-            }
-            _ => return false,
-        }
-        true
-    }
-
-    /// Computes the results of the states taken.
-    fn evaluate(&mut self) {
-        let Self { calls, lanes, driven, storage, inputs, results, library, absent, factors: [_, of_residual], .. } =
-            self;
-        let n = lanes.q.len();
-        match (self.function, calls) {
-            (FunctionId::DynamicResidualDerivatives, [Some(slopes), Some(residual), ..]) => {
-                slopes.run(library, lanes, inputs, results);
-                residual.write_factors(library, lanes, inputs, of_residual);
-                storage.residual_derivatives(of_residual, results);
-            }
-            (
-                FunctionId::DynamicResidualDerivatives
-                | FunctionId::InverseMassMatrix
-                | FunctionId::ForwardDynamicsDerivatives,
-                _,
-            ) => results.fill(T::splat(*absent)),
-            (_, [Some(call), motions, ..]) => {
-                lanes.positions.clear();
-                lanes.positions.resize(n, T::splat(0.0));
-                if let Some(motions) = motions {
-                    let mut pairs = vec![T::splat(0.0); 2 * driven.len()];
-                    motions.run(library, lanes, inputs, &mut pairs);
-                    driven.iter().zip(pairs.chunks_exact(2)).for_each(|(j, pair)| lanes.positions[*j] = pair[0]);
-                }
-                call.run(library, lanes, inputs, results);
-            }
-            _ => results.fill(T::splat(*absent)),
-        }
-    }
-}
-
-impl<T: Number<Columns: Columns<Lane = T>>> Evaluation<T> {
-    /// The results at one state, with the crane's parameters.
-    pub(crate) fn at(&mut self, t: T, q: &[T], v: &[T], a: &[T]) -> &[T] {
-        let Lanes { t: times, q: poses, v: rates, a: accelerations, .. } = &mut self.lanes;
-        for (lanes, given) in [(times, [t].as_slice()), (poses, q), (rates, v), (accelerations, a)] {
-            lanes.clear();
-            lanes.extend_from_slice(given);
-        }
-        let mut results = std::mem::take(&mut self.results);
-        let multiplied = self.multiply(&mut results);
-        self.results = results;
-        if !multiplied {
-            self.evaluate();
-        }
-        &self.results
-    }
-}
-
-impl<T: Number> std::fmt::Debug for Evaluation<T> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Evaluation").field("function", &self.function).finish_non_exhaustive()
-    }
-}
-
-impl<T: Batch> Evaluation<T> {
     /// Computes some rows into `out`, row after row.
     pub fn run(&mut self, rows: &ParameterRows<'_>, range: Range<usize>, out: &mut [f64]) {
         let mut first = range.start;
         for several in out.chunks_mut((T::LANES * self.width).max(1)) {
+            let Self { evaluation, lanes, results, placed, places, .. } = self;
             let count = (range.end - first).min(T::LANES);
-            self.lanes.take(self.sizes, rows, first, count);
+            lanes.take(self.sizes, rows, first, count);
             let given = rows.parameters.len();
             if given > 0 && (first == range.start || given > self.sizes[1]) {
-                for call in self.calls.iter_mut().flatten() {
-                    call.set_parameters(&self.library, &self.lanes.parameters);
-                }
+                evaluation.set_parameters(&lanes.parameters);
             }
-            if !self.multiply(several) {
-                self.evaluate();
-                spread(&self.results, self.width, several);
+            let Lanes { t, q, v, a, .. } = lanes;
+            let t = t.first().copied().unwrap_or(T::splat(0.0));
+            let at = Arguments { t, q, v, a, ..Arguments::none() };
+            if evaluation.multiply(&at, several).is_none() {
+                evaluation.evaluate(&at, results);
+                match places {
+                    Some(places) => {
+                        placed.clear();
+                        placed.extend(places.iter().map(|place| place.map_or(T::splat(0.0), |index| results[index])));
+                        spread(placed, self.width, several);
+                    }
+                    None => spread(results, self.width, several),
+                }
             }
             first += count;
         }
@@ -256,12 +125,6 @@ fn spread<T: Batch>(numbers: &[T], width: usize, out: &mut [f64]) {
     }
 }
 
-impl<T> Lanes<T> {
-    fn new() -> Self {
-        Self { t: vec![], q: vec![], v: vec![], a: vec![], positions: vec![], parameters: vec![] }
-    }
-}
-
 impl<T: Batch> Lanes<T> {
     /// Takes rows of a crane with `n` coordinates and with `parameters` parameters; the last row fills the remaining lanes.
     fn take(&mut self, [n, parameters]: [usize; 2], rows: &ParameterRows<'_>, first: usize, count: usize) {
@@ -276,58 +139,8 @@ impl<T: Batch> Lanes<T> {
     }
 }
 
-impl<T: Number> Call<T> {
-    fn new(crane: &LiveCrane, id: FunctionId) -> Option<Self> {
-        let library = crane.library();
-        let routine = library.routine(id)?;
-        let parameters: Vec<T> = crane.parameters().iter().copied().map(T::splat).collect();
-        Some(Self {
-            id,
-            machine: routine.machine(&parameters),
-            factors: vec![T::splat(0.0); routine.results()],
-            places: places(crane, crane.size(), id),
-        })
-    }
-
-    fn set_parameters(&mut self, library: &Library, parameters: &[T]) {
-        if let Some(routine) = library.routine(self.id) {
-            routine.set_parameters(&mut self.machine, parameters);
-        }
-    }
-
-    /// Writes all numbers of a result in the function's order.
-    fn write_factors(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T], factors: &mut Vec<T>) {
-        factors.resize(self.factors.len(), T::splat(0.0));
-        self.run(library, lanes, inputs, factors);
-    }
-
-    fn run(&mut self, library: &Library, lanes: &Lanes<T>, inputs: &[T], out: &mut [T]) {
-        let Some(routine) = library.routine(self.id) else { return };
-        let t = lanes.t.first().copied().unwrap_or(T::splat(0.0));
-        let Lanes { q, v, a, positions, .. } = lanes;
-        let arguments = Arguments { t, q, v, a, positions, inputs, ..Arguments::none() };
-        match (routine.shape(), &self.places) {
-            (Shape::Columns { points, .. }, _) => {
-                routine.run(&mut self.machine, &arguments, &mut self.factors);
-                mass_matrix(points, &mut self.factors, out);
-            }
-            (Shape::Tangent { segments, entries, .. }, _) => {
-                routine.run(&mut self.machine, &arguments, &mut self.factors);
-                fill_tangent(segments, entries, (&self.factors, T::splat(0.0)), out);
-            }
-            (_, Some(places)) => {
-                routine.run(&mut self.machine, &arguments, &mut self.factors);
-                for (out, place) in out.iter_mut().zip(places) {
-                    *out = place.map_or(T::splat(0.0), |index| self.factors[index]);
-                }
-            }
-            (_, None) => routine.run(&mut self.machine, &arguments, out),
-        }
-    }
-}
-
 impl LiveCrane {
-    /// Extent of each index of a function's result for one state; of functions that leave factors, their number.
+    /// Extent of each index of a function's result for one state.
     #[must_use]
     pub fn shape(&self, function: FunctionId) -> Vec<usize> {
         let (n, count) = (self.size(), |count: Count| DynCrane::count(self, count));
@@ -336,9 +149,10 @@ impl LiveCrane {
             // Also those of coordinates that do not move a body.
             FunctionId::TransformDerivatives => vec![count(Count::Bodies), n, 4, 4],
             id => match id.extent() {
-                Extent::List(_, Count::SecondDerivatives) | Extent::Other => {
-                    vec![self.library().routine(id).map_or(0, Routine::results)]
+                Extent::List(_, Count::SecondDerivatives) => {
+                    vec![self.library().routine(id).map_or(0, |routine| routine.shape().matrices()), 4, 4]
                 }
+                Extent::Other => vec![self.library().routine(id).map_or(0, Routine::results)],
                 extent => extent.shape(n, count).collect(),
             },
         }
@@ -351,6 +165,9 @@ fn places(crane: &LiveCrane, n: usize, id: FunctionId) -> Option<Vec<Option<usiz
     let row_by_row = |matrix: usize| (0..16).map(move |index| 16 * matrix + 4 * (index % 4) + index / 4);
     match id {
         FunctionId::Transforms => Some((0..bodies.len()).flat_map(row_by_row).map(Some).collect()),
+        FunctionId::TransformSecondDerivatives => {
+            Some((0..crane.shape(id)[0]).flat_map(row_by_row).map(Some).collect())
+        }
         FunctionId::TransformDerivatives => {
             let tree = (crane as &dyn DynCrane).tree();
             let (mut places, mut matrices) = (Vec::new(), 0..);

@@ -2,15 +2,15 @@
 
 use crane_codegen::program::FunctionId;
 use crane_model::ParameterError;
-use crane_model::dyn_crane::{DynBlock, DynSystem};
+use crane_model::dyn_crane::{Arguments, DynBlock, DynSystem};
 use crane_model::rt::lanes::f64x8;
 
-use super::{LiveCrane, at};
-use crate::machine::{Arguments, Machine};
+use super::LiveCrane;
+use crate::machine::{Environment, Machine};
 use crate::routine::Routine;
 
 /// A function and the machine for its calls.
-type Ready<'a, T> = Option<(&'a Routine, Machine<T>)>;
+pub(super) type Ready<'a, T> = Option<(&'a Routine, Machine<T>)>;
 
 /// Linear systems, with the factors of the last one.
 pub(super) struct LiveSystem<'a> {
@@ -41,8 +41,8 @@ impl<'a> LiveSystem<'a> {
 impl DynSystem for LiveSystem<'_> {
     fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
         if let Some((routine, machine)) = &mut self.factorise {
-            let arguments = Arguments { added_inertia, base, ..at(q) };
-            routine.run(machine, &arguments, &mut self.factors);
+            let at = Arguments { q, ..Arguments::none() };
+            routine.run(machine, &Environment { added_inertia, base, ..at.into() }, &mut self.factors);
             self.version += 1;
         }
     }
@@ -50,7 +50,8 @@ impl DynSystem for LiveSystem<'_> {
     fn solve(&mut self, r: &[f64], out: &mut [f64]) {
         if let Some((routine, machine)) = &mut self.solve {
             let Self { factors, version, .. } = self;
-            routine.run(machine, &Arguments { factors, version: *version, r, ..Arguments::none() }, out);
+            let at = Arguments { r, ..Arguments::none() };
+            routine.run(machine, &Environment { factors, version: *version, ..at.into() }, out);
         }
     }
 }
@@ -83,8 +84,8 @@ impl<'a> Block<'a> {
 impl DynBlock for Block<'_> {
     fn forward_dynamics(&mut self, t: f64, q: &[f64x8], v: &[f64x8], out: &mut [f64x8]) {
         if let Some((routine, machine)) = &mut self.ready {
-            let arguments = Arguments { t: f64x8::splat(t), q, v, inputs: &self.inputs, ..Arguments::none() };
-            routine.run(machine, &arguments, out);
+            let at = Arguments { t: f64x8::splat(t), q, v, ..Arguments::none() };
+            routine.run(machine, &Environment { inputs: &self.inputs, ..at.into() }, out);
         }
     }
 }

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use crane_codegen::program::FunctionId;
+use crane_model::dyn_crane::Arguments;
 
 use crate::LiveCrane;
 use crate::dual::Dual8;
+use crate::evaluation::Evaluation;
 use crate::machine::Number;
-use crate::rows::Evaluation;
 
 /// The functions of a crane at t = 0, with live parameters that may have slopes.
 pub(super) struct Source<'a> {
@@ -29,7 +30,7 @@ impl<'a> Source<'a> {
     /// Other values and slopes of all inputs, three numbers each.
     pub fn set_inputs(&mut self, inputs: Vec<Dual8>) {
         for evaluation in self.evaluations.values_mut() {
-            evaluation.set_inputs(&inputs);
+            evaluation.set_inputs(inputs.iter().copied());
         }
         self.inputs = inputs;
     }
@@ -54,11 +55,10 @@ impl<'a> Source<'a> {
         let evaluation = evaluations.entry(id).or_insert_with(|| {
             let mut evaluation = Evaluation::new(crane, id);
             evaluation.set_parameters(parameters);
-            evaluation.set_inputs(inputs);
+            evaluation.set_inputs(inputs.iter().copied());
             evaluation
         });
-        let zeros = vec![Dual8::splat(0.0); q.len()];
-        evaluation.at(Dual8::splat(0.0), q, v, &zeros).to_vec()
+        evaluation.at(&Arguments { q, v, ..Arguments::none() }).to_vec()
     }
 
     /// `Jᵀ λ` from the rows of loop joints and what they transmit.

@@ -126,10 +126,10 @@ impl Strength {
         let beyond = |link: &LinkCut| -> Twin {
             let frame = &frames[16 * link.body..][..16];
             let turned =
-                |v: &Vector| -> Vector { [0, 1, 2].map(|row| (0..3).map(|k| frame[4 * row + k] * v[k]).sum()) };
+                |v: &Vector| -> Vector { [0, 1, 2].map(|row| (0..3).map(|k| frame[4 * k + row] * v[k]).sum()) };
             let [force, moment] = &external[link.cut];
             let (force, moment) = (turned(force), turned(moment));
-            let position = [0, 1, 2].map(|row| frame[4 * row + 3]);
+            let position = [12, 13, 14].map(|index| frame[index]);
             [force, sum(&moment, &cross(&position, &force))]
         };
         let all: Vec<Twin> = self.links.iter().map(beyond).collect();

@@ -6,7 +6,8 @@ use crane_codegen::program::{Argument, Entry, Function, FunctionId, Inputs, Layo
 use crane_codegen::symbolic::{Expr, Graph, SweepTrace, SymbolId};
 use crane_codegen::{compile, mechanics};
 use crane_live::Routine;
-use crane_live::machine::Arguments;
+use crane_live::machine::Environment;
+use crane_model::dyn_crane::Arguments;
 use crane_model::rt::lanes::f64x8;
 
 /// Specs with everything that functions can contain: supports, beams, drives, hinges, live parameters, prismatic joints.
@@ -65,22 +66,10 @@ impl State {
             .with(Argument::Factors, self.factors.clone())
     }
 
-    fn arguments(&self) -> Arguments<'_, f64> {
-        Arguments {
-            t: self.t,
-            q: &self.q,
-            v: &self.v,
-            a: &self.right,
-            r: &self.right,
-            multiplier: &[],
-            positions: &self.q,
-            added_inertia: &self.added_inertia,
-            base: &self.base,
-            factors: &self.factors,
-            version: 0,
-            parameters: &[],
-            inputs: &[],
-        }
+    fn environment(&self) -> Environment<'_, f64> {
+        let Self { t, q, v, right, added_inertia, base, factors, .. } = self;
+        let arguments = Arguments { t: *t, q, v, a: right, r: right, positions: q };
+        Environment { added_inertia, base, factors, ..arguments.into() }
     }
 }
 
@@ -106,7 +95,7 @@ fn bytecode_computes_what_the_interpreter_does() {
         for function in &program.functions {
             let routine = Routine::new(&program, function);
             let mut result = vec![f64::NAN; routine.results()];
-            routine.run(&mut routine.machine(&state.parameters), &state.arguments(), &mut result);
+            routine.run(&mut routine.machine(&state.parameters), &state.environment(), &mut result);
             let result = function.shape.expand(slots(&function.shape, &result));
             let expected = program.evaluate(function, &state.inputs());
             assert_eq!(result.len(), expected.len(), "{name} {}", function.id.name());
@@ -130,28 +119,16 @@ fn a_lane_computes_what_one_state_does() {
         let (added_inertia, base) = (lanes(|s| &s.added_inertia), lanes(|s| &s.base));
         let (factors, parameters) = (lanes(|s| &s.factors), lanes(|s| &s.parameters));
         let t = f64x8::new(std::array::from_fn(|lane| states[lane].t));
-        let arguments = Arguments {
-            t,
-            q: &q,
-            v: &v,
-            a: &right,
-            r: &right,
-            multiplier: &[],
-            positions: &q,
-            added_inertia: &added_inertia,
-            base: &base,
-            factors: &factors,
-            version: 0,
-            parameters: &[],
-            inputs: &[],
-        };
+        let arguments = Arguments { t, q: &q, v: &v, a: &right, r: &right, positions: &q };
+        let environment =
+            Environment { added_inertia: &added_inertia, base: &base, factors: &factors, ..arguments.into() };
         for function in &program.functions {
             let routine = Routine::new(&program, function);
             let mut eight = vec![f64x8::splat(0.0); routine.results()];
-            routine.run(&mut routine.machine(&parameters), &arguments, &mut eight);
+            routine.run(&mut routine.machine(&parameters), &environment, &mut eight);
             for (lane, state) in states.iter().enumerate() {
                 let mut one = vec![0.0; routine.results()];
-                routine.run(&mut routine.machine(&state.parameters), &state.arguments(), &mut one);
+                routine.run(&mut routine.machine(&state.parameters), &state.environment(), &mut one);
                 for (eight, one) in eight.iter().zip(&one) {
                     assert_eq!(eight.to_array()[lane], *one, "{name} {} lane {lane}", function.id.name());
                 }
@@ -189,10 +166,10 @@ fn functions_of_one_number_and_choices_are_the_interpreters() {
     let states: Vec<[f64; 2]> = (0..8).map(|i| [f64::from(i) - 3.5, 0.4 * f64::from(i) - 1.0]).collect();
     let q = [0, 1].map(|i| f64x8::new(std::array::from_fn(|lane| states[lane][i])));
     let mut eight = [f64x8::splat(0.0); 8];
-    routine.run(&mut routine.machine(&[]), &Arguments { q: &q, ..Arguments::none() }, &mut eight);
+    routine.run(&mut routine.machine(&[]), &Arguments { q: &q, ..Arguments::none() }.into(), &mut eight);
     for (lane, q) in states.iter().enumerate() {
         let mut one = [0.0; 8];
-        routine.run(&mut routine.machine(&[]), &Arguments { q, ..Arguments::none() }, &mut one);
+        routine.run(&mut routine.machine(&[]), &Arguments { q, ..Arguments::none() }.into(), &mut one);
         let expected = program.evaluate(&program.functions[0], &Inputs::state(0.0, q.to_vec(), vec![], vec![]));
         for ((one, eight), expected) in one.iter().zip(&eight).zip(&expected) {
             assert_eq!(one, &eight.to_array()[lane]);

@@ -1,7 +1,7 @@
 //! Rows compared with the functions of one crane: the same bits, whatever the other rows contain.
 
 use crane_codegen::build;
-use crane_live::rows::{Evaluation, ParameterRows};
+use crane_live::rows::{BatchEvaluation, ParameterRows};
 use crane_live::{FunctionId, LiveCrane};
 use crane_model::dyn_crane::DynCrane;
 use crane_model::nalgebra::{Matrix4, Vector3};
@@ -35,7 +35,7 @@ fn mass_matrices_with_parameters_of_their_own() {
         .collect();
     let mut out = vec![f64::NAN; COUNT * n * n];
     let rows = ParameterRows { q: &q, parameters: &parameters, ..ParameterRows::default() };
-    Evaluation::<f64x8>::new(&crane, FunctionId::MassMatrix).run(&rows, 0..COUNT, &mut out);
+    BatchEvaluation::<f64x8>::new(&crane, FunctionId::MassMatrix).run(&rows, 0..COUNT, &mut out);
     let mut alone = vec![f64::NAN; n * n];
     for row in 0..COUNT {
         let mut single = crane.clone();
@@ -52,7 +52,7 @@ fn transforms_are_written_row_by_row() {
     let q = poses(&crane);
     let mut out = vec![f64::NAN; COUNT * 16 * bodies];
     let rows = ParameterRows { q: &q, ..ParameterRows::default() };
-    Evaluation::<f64x8>::new(&crane, FunctionId::Transforms).run(&rows, 0..COUNT, &mut out);
+    BatchEvaluation::<f64x8>::new(&crane, FunctionId::Transforms).run(&rows, 0..COUNT, &mut out);
     let mut alone = vec![Matrix4::zeros(); bodies];
     for row in 0..COUNT {
         crane.transforms(&q[row * n..(row + 1) * n], &mut alone);
@@ -68,7 +68,7 @@ fn jacobians_turn_rates_into_velocities() {
     let q = poses(&crane);
     let v: Vec<f64> = (0..n).map(|j| (0.7 * (j as f64 + 1.0)).sin()).collect();
     let mut jacobian = vec![f64::NAN; 3 * points * n];
-    Evaluation::<f64>::new(&crane, FunctionId::PointJacobians).run(
+    BatchEvaluation::<f64>::new(&crane, FunctionId::PointJacobians).run(
         &ParameterRows { q: &q[..n], ..ParameterRows::default() },
         0..1,
         &mut jacobian,
@@ -90,7 +90,7 @@ fn derivatives_of_accelerations_are_those_of_one_crane() {
     let v: Vec<f64> = (0..COUNT * n).map(|k| 0.1 * (0.7 * k as f64).cos()).collect();
     let mut out = vec![f64::NAN; COUNT * 3 * n * n];
     let rows = ParameterRows { q: &q, v: &v, ..ParameterRows::default() };
-    Evaluation::<f64x8>::new(&crane, FunctionId::ForwardDynamicsDerivatives).run(&rows, 0..COUNT, &mut out);
+    BatchEvaluation::<f64x8>::new(&crane, FunctionId::ForwardDynamicsDerivatives).run(&rows, 0..COUNT, &mut out);
     let mut alone = vec![f64::NAN; 3 * n * n];
     for (row, found) in out.chunks(3 * n * n).enumerate() {
         let range = row * n..(row + 1) * n;

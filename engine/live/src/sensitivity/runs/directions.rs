@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crane_codegen::chain::Input;
 use crane_codegen::program::{Argument, FunctionId};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{Arguments, DynCrane};
 use crane_model::dynamics::gradients::{Around, CylinderSlopes, FeetSlopes, MotionAt, Numbers, Slopes};
 use crane_model::{Description, EventInfo, ParameterError};
 
@@ -12,8 +12,8 @@ use super::Along;
 use crate::LiveCrane;
 use crate::bytecode::{Code, Fixed};
 use crate::dual::{DIRECTIONS, Dual8};
+use crate::evaluation::Evaluation;
 use crate::machine::Number;
-use crate::rows::Evaluation;
 
 /// Relative step of a parameter or an input for what is differenced, and its step from zero.
 const STEP: f64 = 1e-6;
@@ -251,7 +251,7 @@ impl Chunk {
         let evaluation = |id: FunctionId| {
             let mut evaluation = Evaluation::new(crane, id);
             evaluation.set_parameters(&parameters);
-            evaluation.set_inputs(&inputs);
+            evaluation.set_inputs(inputs.iter().copied());
             evaluation
         };
         let has_loops = !crane.loop_joints().is_empty();
@@ -287,8 +287,7 @@ impl Chunk {
     /// J with its slopes.
     fn jacobian(&mut self, q: &[Dual8]) -> Vec<Dual8> {
         let Some([_, jacobians]) = &mut self.loops else { return Vec::new() };
-        let zeros = constants(&vec![0.0; q.len()]);
-        jacobians.at(Dual8::splat(0.0), q, &zeros, &zeros).to_vec()
+        jacobians.at(&Arguments { q, ..Arguments::none() }).to_vec()
     }
 }
 
@@ -351,8 +350,8 @@ impl Numbers for Directions<'_> {
             for id in [FunctionId::DrivePieces, FunctionId::LoadPieces, FunctionId::WinchPieces] {
                 let mut evaluation = Evaluation::<Dual8>::new(&self.crane, id);
                 evaluation.set_parameters(&chunk.parameters);
-                evaluation.set_inputs(&chunk.inputs);
-                for time in evaluation.at(Dual8::splat(0.0), &[], &[], &[]) {
+                evaluation.set_inputs(chunk.inputs.iter().copied());
+                for time in evaluation.at(&Arguments::none()) {
                     if number == 0 {
                         all.push((time.value(), Vec::new()));
                     }
@@ -381,7 +380,8 @@ impl Slopes for Directions<'_> {
             let along = &along[first..][..chunk.count];
             let (q, v, a) = (moved(at.q, 0, along), moved(at.v, n, along), constants(at.a));
             let rows = chunk.jacobian(&q);
-            let residual = chunk.residual.at(Dual8::splat(at.t), &q, &v, &a);
+            let residual =
+                chunk.residual.at(&Arguments { t: Dual8::splat(at.t), q: &q, v: &v, a: &a, ..Arguments::none() });
             for (direction, out) in out[first..].iter_mut().take(chunk.count).enumerate() {
                 for (out, number) in out.iter_mut().zip(residual) {
                     *out = number.slope(direction);
@@ -398,10 +398,10 @@ impl Slopes for Directions<'_> {
         for (number, chunk) in self.chunks.iter_mut().enumerate() {
             let first = number * DIRECTIONS;
             let along = &along[first..][..chunk.count];
-            let (q, v, zeros) = (moved(at.q, 0, along), moved(at.v, n, along), constants(at.a));
+            let (q, v) = (moved(at.q, 0, along), moved(at.v, n, along));
             let rows = chunk.jacobian(&q);
             let Some([states, _]) = &mut chunk.loops else { continue };
-            let states = states.at(Dual8::splat(at.t), &q, &v, &zeros);
+            let states = states.at(&Arguments { t: Dual8::splat(at.t), q: &q, v: &v, ..Arguments::none() });
             for (direction, out) in out[first..].iter_mut().take(chunk.count).enumerate() {
                 let equations = states.chunks_exact(3).zip(rows.chunks_exact(n.max(1)));
                 for (out, (state, row)) in out.iter_mut().zip(equations) {
@@ -422,7 +422,10 @@ impl Slopes for Directions<'_> {
             let (t, zeros) = (Dual8::splat(at.t), constants(&vec![0.0; n]));
             let (q, v) = (moved(at.q, 0, along), moved(at.v, n, along));
             let pair = |states: &[Dual8], direction: usize| [0, 1].map(|k| states[k].slope(direction));
-            let (states, jacobians) = (oil.states.at(t, &q, &v, &zeros), oil.jacobians.at(t, &q, &zeros, &zeros));
+            let (states, jacobians) = (
+                oil.states.at(&Arguments { t, q: &q, v: &v, ..Arguments::none() }),
+                oil.jacobians.at(&Arguments { t, q: &q, ..Arguments::none() }),
+            );
             for (direction, out) in out.iter_mut().enumerate() {
                 let own = states.chunks_exact(3).zip(jacobians.chunks_exact(n.max(1)));
                 for (out, (states, row)) in out.iter_mut().zip(own) {
@@ -433,13 +436,13 @@ impl Slopes for Directions<'_> {
             if !oil.wants_more {
                 continue;
             }
-            let motions = motions.at(t, &[], &[], &[]);
+            let motions = motions.at(&Arguments { t, ..Arguments::none() });
             let [mut wanted_q, mut wanted_v] = [zeros.clone(), zeros.clone()];
             for (drive, coordinate) in &oil.driven {
                 (wanted_q[*coordinate], wanted_v[*coordinate]) = (motions[2 * drive], motions[2 * drive + 1]);
             }
-            let openings = oil.openings.at(t, &[], &[], &[]);
-            let wanted = oil.states.at(t, &wanted_q, &wanted_v, &zeros);
+            let openings = oil.openings.at(&Arguments { t, ..Arguments::none() });
+            let wanted = oil.states.at(&Arguments { t, q: &wanted_q, v: &wanted_v, ..Arguments::none() });
             for (direction, out) in out.iter_mut().enumerate() {
                 for (out, (states, drive)) in out.iter_mut().zip(wanted.chunks_exact(3).zip(&oil.drives)) {
                     out.wanted = pair(states, direction);
@@ -455,9 +458,9 @@ impl Slopes for Directions<'_> {
             let Some(feet) = feet else { continue };
             let first = number * DIRECTIONS;
             let along = &along[first..][..*count];
-            let (q, v, zeros) = (moved(at.q, 0, along), moved(at.v, n, along), constants(&vec![0.0; n]));
+            let (q, v) = (moved(at.q, 0, along), moved(at.v, n, along));
             for (index, function) in feet.iter_mut().enumerate() {
-                let numbers = function.at(Dual8::splat(at.t), &q, &v, &zeros);
+                let numbers = function.at(&Arguments { t: Dual8::splat(at.t), q: &q, v: &v, ..Arguments::none() });
                 for (direction, out) in out[first..].iter_mut().take(*count).enumerate() {
                     let slopes = in_order(out)[index].iter_mut().zip(numbers);
                     slopes.for_each(|(slope, number)| *slope = number.slope(direction));
@@ -472,7 +475,7 @@ impl Slopes for Directions<'_> {
             return any;
         }
         for (number, chunk) in self.chunks.iter_mut().enumerate() {
-            let motions = chunk.motions.at(Dual8::splat(t), &[], &[], &[]);
+            let motions = chunk.motions.at(&Arguments { t: Dual8::splat(t), ..Arguments::none() });
             for (direction, out) in out[number * DIRECTIONS..].iter_mut().take(chunk.count).enumerate() {
                 for (out, pair) in out.iter_mut().zip(motions.chunks_exact(2)) {
                     *out = [pair[0].slope(direction), pair[1].slope(direction)];
