@@ -1,10 +1,11 @@
 //! Every quantity that a generated crane computes, as plain numbers in one order: what the proofs of equality to the interpreter and of no
 //! allocation, and the check with CasADi, go through.
 
+use bytemuck::{Pod, Zeroable, cast_slice, cast_slice_mut};
 use crane_codegen::program::{Extent, FunctionId, Item};
 use crane_model::nalgebra::{Matrix4, SMatrix, SVector, Vector3};
 use crane_model::rt::lanes::f64x8;
-use crane_model::{CraneModel, Description, Entry, LaneDynamics, Linearisation, SectionModuli, Tension, Wrench};
+use crane_model::{CraneModel, Description, LaneDynamics, Linearisation, SectionModuli, Tension, Wrench};
 use crane_quantities::quantities;
 
 /// A quantity: its name and the shape of its numbers, row-major.
@@ -95,9 +96,9 @@ pub struct Lists<const N: usize> {
 impl<const N: usize> Lists<N> {
     /// The lists of a crane.
     pub fn new(crane: &impl CraneModel<N>) -> Self {
-        fn list<T: Entry>(lengths: &[(Item, usize)], item: Item) -> Vec<T> {
+        fn list<T: Zeroable + Clone>(lengths: &[(Item, usize)], item: Item) -> Vec<T> {
             let of_item = lengths.iter().filter(|(of, _)| *of == item);
-            vec![T::repeat(0.0); of_item.map(|(_, length)| *length).max().unwrap_or_default()]
+            vec![T::zeroed(); of_item.map(|(_, length)| *length).max().unwrap_or_default()]
         }
         let length = |id: &FunctionId| match id.extent() {
             Extent::List(item, count) => Some((item, crane.description().count(crane.loop_joints(), count))),
@@ -119,10 +120,15 @@ impl<const N: usize> Lists<N> {
 /// Calls a method.
 macro_rules! call {
     (other $($row:tt)*) => {};
+    ([transform; $count:ident] $crane:ident $lists:ident $visit:ident $id:ident $name:ident($($argument:expr),*)) => {
+        let list = part(&mut $lists.transform, $crane, FunctionId::$id);
+        $crane.$name($($argument,)* list);
+        $visit(FunctionId::$id, &mut list.iter().flat_map(|matrix| (0..16).map(|index| matrix[(index / 4, index % 4)])));
+    };
     ([$item:ident; $count:ident] $crane:ident $lists:ident $visit:ident $id:ident $name:ident($($argument:expr),*)) => {
         let list = part(&mut $lists.$item, $crane, FunctionId::$id);
         $crane.$name($($argument,)* list);
-        $visit(FunctionId::$id, &mut list.iter().flat_map(RowByRow::row_by_row));
+        $visit(FunctionId::$id, &mut cast_slice::<_, f64>(list).iter().copied());
     };
     (number $crane:ident $lists:ident $visit:ident $id:ident $name:ident($($argument:expr),*)) => {
         $visit(FunctionId::$id, &mut std::iter::once($crane.$name($($argument),*)));
@@ -158,23 +164,12 @@ pub fn call_every<const N: usize, C: CraneModel<N>>(
 }
 
 /// The part of a list that a function writes, with other contents.
-fn part<'a, const N: usize, T: Entry>(list: &'a mut [T], crane: &impl CraneModel<N>, id: FunctionId) -> &'a mut [T] {
+fn part<'a, const N: usize, T: Pod>(list: &'a mut [T], crane: &impl CraneModel<N>, id: FunctionId) -> &'a mut [T] {
     let Extent::List(_, count) = id.extent() else { return &mut [] };
     let part = &mut list[..crane.description().count(crane.loop_joints(), count)];
-    part.fill(T::repeat(f64::NAN));
+    cast_slice_mut::<_, f64>(part).fill(f64::NAN);
     part
 }
-
-/// The numbers of an entry, a matrix row by row.
-trait RowByRow: Entry {
-    fn row_by_row(&self) -> impl Iterator<Item = f64> {
-        let entry = *self;
-        let numbers = move |place: usize| entry.numbers().nth(place).unwrap_or_default();
-        (0..Self::LEN).map(move |index| numbers(if Self::LEN == 16 { 4 * (index % 4) + index / 4 } else { index }))
-    }
-}
-
-impl<T: Entry> RowByRow for T {}
 
 /// All quantities of a generated crane at a state, one after the other.
 pub fn evaluate<const N: usize, C: CraneModel<N>>(crane: &C, state: &State) -> Vec<f64> {

@@ -6,7 +6,7 @@ use std::{
 };
 
 use crane_codegen::program::Argument;
-use crane_live::rows::{Evaluation, ParameterRows};
+use crane_live::rows::{BatchEvaluation, ParameterRows};
 use crane_live::{FunctionId, LiveCrane, Refusal};
 use crane_model::{Description, Tree, dyn_crane::DynCrane};
 use nalgebra::Matrix4;
@@ -171,7 +171,7 @@ fn evaluate(quantity: Quantity, live: &LiveCrane, t: f64, q: &[f64], v: &[f64]) 
             matrices(&derivatives.transform_second_derivatives_at(q))
         }
         Quantity::Of(id) => {
-            let mut evaluation = Evaluation::<f64>::new(live, id);
+            let mut evaluation = BatchEvaluation::<f64>::new(live, id);
             let mut numbers = vec![0.0; evaluation.width()];
             // Those of the motion from this state.
             let a = if takes_accelerations(id) { crane.accelerations_at(t, q, v).as_slice().to_vec() } else { vec![] };

@@ -13,7 +13,7 @@ use crane_codegen::units::Quantity;
 use crane_codegen::{Change, Checked, SourceFile, build, edit, exchange, files};
 use crane_live::LiveCrane;
 use crane_live::imported::check_import;
-use crane_live::rows::Evaluation;
+use crane_live::rows::BatchEvaluation;
 use crane_model::Description;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::runs::Start;
@@ -40,7 +40,7 @@ pub struct Crane {
     /// Rows whose parameters break a rule.
     pub bad: Vec<BadRow>,
     /// Workspaces for single states, by quantity.
-    workspaces: Mutex<HashMap<FunctionId, Evaluation<f64>>>,
+    workspaces: Mutex<HashMap<FunctionId, BatchEvaluation<f64>>>,
 }
 
 /// Names of the cranes that come with the package.
@@ -455,9 +455,9 @@ impl Crane {
     }
 
     /// Runs `call` with the workspace for a function of one state, kept from the last call.
-    pub fn with_workspace<R>(&self, function: FunctionId, call: impl FnOnce(&mut Evaluation<f64>) -> R) -> R {
+    pub fn with_workspace<R>(&self, function: FunctionId, call: impl FnOnce(&mut BatchEvaluation<f64>) -> R) -> R {
         let kept = self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).remove(&function);
-        let mut evaluation = kept.unwrap_or_else(|| Evaluation::new(&self.live, function));
+        let mut evaluation = kept.unwrap_or_else(|| BatchEvaluation::new(&self.live, function));
         let result = call(&mut evaluation);
         self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).insert(function, evaluation);
         result

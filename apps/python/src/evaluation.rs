@@ -1,6 +1,6 @@
 //! How a function is computed of states: rows of all arguments, eight at a time or one by one, on all threads.
 
-use crane_live::rows::{Evaluation, ParameterRows};
+use crane_live::rows::{BatchEvaluation, ParameterRows};
 use crane_live::{FunctionId, Refusal};
 use crane_model::dyn_crane::DynCrane;
 use crane_model::rt::lanes::f64x8;
@@ -89,7 +89,7 @@ impl Crane {
         let array = zeros(py, &joined.shape, of_row);
         let mut numbers = array.readwrite();
         let out = numbers.as_slice_mut().unwrap_or_default();
-        let make = || Evaluation::<f64x8>::new(&self.live, function);
+        let make = || BatchEvaluation::<f64x8>::new(&self.live, function);
         for_rows(py, (PIECE, width), out, make, |evaluation, range, out| evaluation.run(&rows, range, out))?;
         forget(out, &bad, width);
         warn_of_rows(py, &bad, &joined.shape)?;

@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use crane_codegen::chain::{Analyses, Input};
 use crane_codegen::program::FunctionId;
 use crane_codegen::{SourceFile, compile, mechanics};
-use crane_live::machine::Arguments;
+use crane_live::machine::Environment;
 use crane_live::{LiveCrane, Routine};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{Arguments, DynCrane};
 use crane_model::dynamics::rk4;
 use crane_model::nalgebra::{Cholesky, Matrix4, Matrix6, SMatrix, SVector};
 use crane_model::rt::lanes::f64x8;
@@ -118,9 +118,9 @@ fn accelerations_of_eight<const N: usize>(spec: &str) -> impl Fn(&EightStates<N>
     routine.compile::<f64x8>();
     let machine = RefCell::new(routine.machine(&parameters));
     move |s, out| {
-        let arguments =
-            Arguments { t: s.t, q: s.q.as_slice(), v: s.v.as_slice(), inputs: &inputs, ..Arguments::none() };
-        routine.run(&mut machine.borrow_mut(), &arguments, out.as_mut_slice());
+        let arguments = Arguments { t: s.t, q: s.q.as_slice(), v: s.v.as_slice(), ..Arguments::none() };
+        let environment = Environment { inputs: &inputs, ..arguments.into() };
+        routine.run(&mut machine.borrow_mut(), &environment, out.as_mut_slice());
     }
 }
 
@@ -130,8 +130,8 @@ fn interpreted<const N: usize>(spec: &str) -> impl Fn(&State<N>, &mut SVector<f6
     let machine = RefCell::new(routine.machine(&parameters));
     move |s, out| {
         let (t, q, v) = (s.t, s.q.as_slice(), s.v.as_slice());
-        let arguments = Arguments { t, q, v, inputs: &inputs, ..Arguments::none() };
-        routine.interpret(&mut machine.borrow_mut(), &arguments, out.as_mut_slice());
+        let environment = Environment { inputs: &inputs, ..Arguments { t, q, v, ..Arguments::none() }.into() };
+        routine.interpret(&mut machine.borrow_mut(), &environment, out.as_mut_slice());
     }
 }
 
