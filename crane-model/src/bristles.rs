@@ -18,7 +18,7 @@ use nalgebra::DMatrixViewMut;
 use crate::{
     BristleInfo, Description, StateAt,
     column::column_name,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     stateful_force::{Evaluated, ForceRow, ForceState, StatefulForce, StatefulForces},
 };
 
@@ -62,13 +62,13 @@ impl StatefulForces for Bristles {
     }
 
     /// Bristles that carry nothing.
-    fn holding(&mut self, _: &dyn DynCrane, _: f64, _: &[f64]) -> Vec<f64> {
+    fn holding(&mut self, _: &dyn Functions, _: f64, _: &[f64]) -> Vec<f64> {
         vec![0.0; self.0.len()]
     }
 
     fn evaluate(
         &mut self,
-        _: &dyn DynCrane,
+        _: &dyn Functions,
         moment: &StateAt<'_>,
         Evaluated { rates, forces, .. }: Evaluated<'_>,
         mut by_states: Option<DMatrixViewMut<'_, f64>>,
@@ -102,7 +102,7 @@ impl StatefulForces for Bristles {
     }
 
     /// Appends the direction in which each joint moves.
-    fn branches(&mut self, _: &dyn DynCrane, moment: &StateAt<'_>, out: &mut Vec<bool>) {
+    fn branches(&mut self, _: &dyn Functions, moment: &StateAt<'_>, out: &mut Vec<bool>) {
         out.extend(self.joints().map(|joint| moment.v[joint.coordinate] > 0.0));
     }
 }

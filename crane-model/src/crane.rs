@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::{
     ParameterError, StateAt, Wrench,
-    dyn_crane::{DynCrane, Energies},
+    dyn_crane::{DynCrane, Energies, Functions},
     dynamics,
     dynamics::{InitialState, Run, Sample, Stopped, ensemble, ensemble::Member},
     feet::{Feet, Slid},
@@ -22,17 +22,7 @@ use crate::{
 impl dyn DynCrane + '_ {
     /// Torques and forces of the drives at a sample of a run, those of cylinders with a valve from their pressures: N m and N.
     pub fn drive_efforts_of(&self, sample: &Sample<'_>) -> Vec<f64> {
-        self.drive_efforts_with(sample)
-    }
-
-    /// The same at a state of the crane and its forces.
-    pub(crate) fn drive_efforts_with(&self, moment: &StateAt<'_>) -> Vec<f64> {
-        let mut efforts = self.open_drive_efforts(moment.t, moment.q, moment.v);
-        force_states::add_to_rigid_drives(self, moment, &mut efforts);
-        if let Some(oil) = Oil::at(self, moment) {
-            oil.give_efforts(self.description(), &mut efforts);
-        }
-        efforts
+        drive_efforts_with(self, sample)
     }
 
     /// How much of its friction each one-sided support on the ground uses in a pose at rest, |F|/(μ N), with its index: from 1 on it slides.
@@ -42,14 +32,7 @@ impl dyn DynCrane + '_ {
 
     /// Energies at a sample of a run, with the springs of feet that have slid, J.
     pub fn energies_of(&self, sample: &Sample<'_>) -> Energies {
-        self.energies_with(sample, &Slid::at(self, sample))
-    }
-
-    /// The same at a state of the crane and its forces.
-    pub(crate) fn energies_with(&self, moment: &StateAt<'_>, slid: &Slid) -> Energies {
-        let mut energies = self.energies_at(moment.t, moment.q, moment.v);
-        energies.supports += slid.energy;
-        energies
+        energies_with(self, sample, &Slid::at(self, sample))
     }
 
     /// As `internal_forces_at`, with cylinders that push with the force of their pressures, which are among the states `x` of forces.
@@ -113,4 +96,21 @@ impl dyn DynCrane + '_ {
         };
         members.iter().enumerate().map(run).collect()
     }
+}
+
+/// Torques and forces of the drives at a state of the crane and its forces, N m and N.
+pub(crate) fn drive_efforts_with(crane: &dyn Functions, moment: &StateAt<'_>) -> Vec<f64> {
+    let mut efforts = crane.open_drive_efforts_at(moment.t, moment.q, moment.v);
+    force_states::add_to_rigid_drives(crane, moment, &mut efforts);
+    if let Some(oil) = Oil::at(crane, moment) {
+        oil.give_efforts(crane.description(), &mut efforts);
+    }
+    efforts
+}
+
+/// Energies at a state of the crane and its forces, with the springs of feet that have slid, J.
+pub(crate) fn energies_with(crane: &dyn Functions, moment: &StateAt<'_>, slid: &Slid) -> Energies {
+    let mut energies = crane.energies_at(moment.t, moment.q, moment.v);
+    energies.supports += slid.energy;
+    energies
 }

@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DMatrixViewMut, Vector3};
 
 use crate::{
     CoordinateRole, Description, StateAt,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     hydraulics::Hydraulics,
     stateful_force::{Evaluated, ForceRow, ForceState, StatefulForce, StatefulForces},
 };
@@ -181,7 +181,7 @@ impl Feet {
     }
 
     /// The feet of a crane in a pose at rest.
-    pub fn at_rest(crane: &dyn DynCrane, q: &[f64]) -> Self {
+    pub fn at_rest(crane: &dyn Functions, q: &[f64]) -> Self {
         let mut feet = Self::new(crane.description());
         feet.evaluate_at(crane, q, &vec![0.0; q.len()]);
         feet
@@ -208,7 +208,7 @@ impl Feet {
     }
 
     /// Evaluates J. Of a fleet, number i of crane l of m is at i m + l, that of a support as that of a row.
-    fn evaluate_jacobians(&mut self, crane: &dyn DynCrane, q: &[f64]) {
+    fn evaluate_jacobians(&mut self, crane: &dyn Functions, q: &[f64]) {
         let ([first, count], cranes, supports) = (self.base, crane.cranes(), self.grips.len());
         let n = self.n / cranes;
         self.all_jacobians.resize(3 * supports * n, 0.0);
@@ -223,7 +223,7 @@ impl Feet {
         }
     }
 
-    fn evaluate_at(&mut self, crane: &dyn DynCrane, q: &[f64], v: &[f64]) {
+    fn evaluate_at(&mut self, crane: &dyn Functions, q: &[f64], v: &[f64]) {
         if self.is_empty() {
             return;
         }
@@ -232,14 +232,14 @@ impl Feet {
     }
 
     /// Whether all feet stick where the spec puts them, so that they add nothing.
-    fn all_stick(&mut self, crane: &dyn DynCrane, moment: &StateAt<'_>) -> bool {
+    fn all_stick(&mut self, crane: &dyn Functions, moment: &StateAt<'_>) -> bool {
         crane.support_grips(moment.q, moment.v, &mut self.grips);
         let mut feet = self.all.iter().map(|foot| self.grips[foot.support]);
         moment.x.iter().all(|slid| *slid == 0.0) && feet.all(|grips| grips.z <= grips.y && grips.x > 0.0)
     }
 
     /// Everything but the grips.
-    fn evaluate_rest(&mut self, crane: &dyn DynCrane, q: &[f64], v: &[f64]) {
+    fn evaluate_rest(&mut self, crane: &dyn Functions, q: &[f64], v: &[f64]) {
         let [elongations, stiffnesses, dampings] = &mut self.numbers;
         crane.support_elongations(q, elongations);
         let known = std::mem::replace(&mut self.has_constants, true);
@@ -442,7 +442,7 @@ pub(crate) struct Slid {
 
 impl Slid {
     /// At a state with the states of its forces; as if nothing had slid without them.
-    pub fn at(crane: &dyn DynCrane, moment: &StateAt<'_>) -> Self {
+    pub fn at(crane: &dyn Functions, moment: &StateAt<'_>) -> Self {
         let description = crane.description();
         let mut feet = Feet::new(description);
         let count = 2 * feet.all.len();
@@ -499,7 +499,7 @@ impl StatefulForces for Feet {
     }
 
     /// Places from which no foot slides at rest.
-    fn holding(&mut self, crane: &dyn DynCrane, _: f64, q: &[f64]) -> Vec<f64> {
+    fn holding(&mut self, crane: &dyn Functions, _: f64, q: &[f64]) -> Vec<f64> {
         self.forget();
         self.evaluate_at(crane, q, &vec![0.0; q.len()]);
         let slid = |foot: &Foot, axis: usize| {
@@ -511,7 +511,7 @@ impl StatefulForces for Feet {
 
     fn evaluate(
         &mut self,
-        crane: &dyn DynCrane,
+        crane: &dyn Functions,
         moment: &StateAt<'_>,
         Evaluated { rates, forces, rows }: Evaluated<'_>,
         mut by_states: Option<DMatrixViewMut<'_, f64>>,
@@ -588,7 +588,7 @@ impl StatefulForces for Feet {
     }
 
     /// Appends whether each foot slides.
-    fn branches(&mut self, crane: &dyn DynCrane, moment: &StateAt<'_>, out: &mut Vec<bool>) {
+    fn branches(&mut self, crane: &dyn Functions, moment: &StateAt<'_>, out: &mut Vec<bool>) {
         if self.is_empty() || self.all_stick(crane, moment) {
             out.extend(self.all.iter().map(|_| false));
             return;

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use crate::{
     Description, StateAt,
     bristles::Bristles,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     feet::Feet,
     hydraulics::Hydraulics,
     loop_joints::{self, Loops},
@@ -106,17 +106,17 @@ impl ForceStates {
 
     /// The states that hold a pose at rest at a given time: shut valves, the unloaded side at tank pressure, and
     /// bristles that carry nothing.
-    pub fn holding(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64]) -> Vec<f64> {
+    pub fn holding(&mut self, crane: &dyn Functions, t: f64, q: &[f64]) -> Vec<f64> {
         self.kinds.iter_mut().flat_map(|(kind, _)| kind.holding(crane, t, q)).collect()
     }
 
     /// The states of a start at a pose: those given, or, if there are none, those that hold it at rest.
-    pub(crate) fn start(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64], given: &[f64]) -> Vec<f64> {
+    pub(crate) fn start(&mut self, crane: &dyn Functions, t: f64, q: &[f64], given: &[f64]) -> Vec<f64> {
         if given.is_empty() { self.holding(crane, t, q) } else { given.to_vec() }
     }
 
     /// As [`holding`](Self::holding), with valves that have opened slightly, in either direction.
-    pub(crate) fn slightly_open(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
+    pub(crate) fn slightly_open(&mut self, crane: &dyn Functions, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
         let mut both = [Vec::new(), Vec::new()];
         for (kind, _) in &mut self.kinds {
             both.iter_mut().zip(kind.slightly_open(crane, t, q)).for_each(|(all, own)| all.extend(own));
@@ -160,7 +160,7 @@ impl ForceStates {
     /// Evaluates all forces and the rates of their states and, if requested, the derivatives of the rates with respect to the states.
     pub(crate) fn evaluate(
         &mut self,
-        crane: &dyn DynCrane,
+        crane: &dyn Functions,
         moment: &StateAt<'_>,
         rates: &mut [f64],
         mut by_states: Option<&mut DMatrix<f64>>,
@@ -197,7 +197,7 @@ impl ForceStates {
     /// Adds what the forces contribute to the accelerations, and writes the rates of the states.
     pub(crate) fn accelerate(
         &mut self,
-        crane: &dyn DynCrane,
+        crane: &dyn Functions,
         moment: &StateAt<'_>,
         rates: &mut [f64],
         accelerations: &mut [f64],
@@ -206,7 +206,7 @@ impl ForceStates {
     }
 
     /// Adds the generalized forces, and writes the rates of the states.
-    pub(crate) fn push(&mut self, crane: &dyn DynCrane, moment: &StateAt<'_>, rates: &mut [f64], forces: &mut [f64]) {
+    pub(crate) fn push(&mut self, crane: &dyn Functions, moment: &StateAt<'_>, rates: &mut [f64], forces: &mut [f64]) {
         self.evaluate(crane, moment, rates, None);
         add_forces(&self.forces, &self.rows, forces);
     }
@@ -214,7 +214,7 @@ impl ForceStates {
     /// As `accelerate`, with the derivatives of the rates with respect to the states, if requested.
     pub(crate) fn accelerate_with_slopes(
         &mut self,
-        crane: &dyn DynCrane,
+        crane: &dyn Functions,
         moment: &StateAt<'_>,
         rates: &mut [f64],
         by_states: Option<&mut DMatrix<f64>>,
@@ -232,7 +232,7 @@ impl ForceStates {
     /// ```
     pub(crate) fn on_rigid_drives(
         &mut self,
-        crane: &dyn DynCrane,
+        crane: &dyn Functions,
         q: &[f64],
     ) -> impl Iterator<Item = (usize, f64)> + '_ {
         if !self.prescribed.is_empty() && !self.forces.is_empty() {
@@ -247,7 +247,7 @@ impl ForceStates {
     }
 
     /// Generalized forces of the forces as last evaluated, and the accelerations that they add.
-    fn add_accelerations(&mut self, crane: &dyn DynCrane, q: &[f64]) {
+    fn add_accelerations(&mut self, crane: &dyn Functions, q: &[f64]) {
         let Self { forces, rows, efforts: [efforts, added], .. } = self;
         efforts.fill(0.0);
         add_forces(forces, rows, efforts);
@@ -255,7 +255,7 @@ impl ForceStates {
     }
 
     /// Appends which branch of its law each force is on.
-    pub(crate) fn branches(&mut self, crane: &dyn DynCrane, moment: &StateAt<'_>, out: &mut Vec<bool>) {
+    pub(crate) fn branches(&mut self, crane: &dyn Functions, moment: &StateAt<'_>, out: &mut Vec<bool>) {
         let mut first = 0;
         for (kind, [_, end]) in &mut self.kinds {
             kind.branches(crane, &moment.with_states(first..*end), out);
@@ -281,7 +281,7 @@ impl ForceStates {
 
 /// Adds what forces with states and closed loops contribute to the efforts of rigid drives, which generated code computes without them, N m
 /// and N.
-pub(crate) fn add_to_rigid_drives(crane: &dyn DynCrane, moment: &StateAt<'_>, efforts: &mut [f64]) {
+pub(crate) fn add_to_rigid_drives(crane: &dyn Functions, moment: &StateAt<'_>, efforts: &mut [f64]) {
     let description = crane.description();
     if description.prescribed().is_empty() {
         return;
@@ -333,7 +333,7 @@ pub fn impossible(description: &Description, x: &[f64]) -> Option<String> {
 ///
 /// # Panics
 /// If `x` does not have one entry per state.
-pub fn accelerations(crane: &dyn DynCrane, state: &StateAt<'_>) -> (Vec<f64>, Vec<f64>) {
+pub fn accelerations(crane: &dyn Functions, state: &StateAt<'_>) -> (Vec<f64>, Vec<f64>) {
     let states = ForceStates::new(crane.description()).len();
     assert_eq!(state.x.len(), states, "one number for each state of a force");
     let ClosedMotion { accelerations, rates, .. } = motion_at(crane, state);
@@ -359,7 +359,7 @@ impl ClosedMotion {
 }
 
 /// The accelerations at a state; without the states of forces if they are not given.
-pub(crate) fn motion_at(crane: &dyn DynCrane, moment: &StateAt<'_>) -> ClosedMotion {
+pub(crate) fn motion_at(crane: &dyn Functions, moment: &StateAt<'_>) -> ClosedMotion {
     let &StateAt { q, x, .. } = moment;
     let (mut accelerations, mut rates) = (vec![0.0; q.len()], vec![0.0; x.len()]);
     let mut loops = Loops::new(crane);
@@ -378,7 +378,7 @@ pub(crate) fn motion_at(crane: &dyn DynCrane, moment: &StateAt<'_>) -> ClosedMot
 }
 
 /// What closing the loops adds to the effort of each rigid drive: its coordinate, and N m or N.
-pub(crate) fn loops_on_rigid_drives(crane: &dyn DynCrane, moment: &StateAt<'_>) -> Vec<(usize, f64)> {
+pub(crate) fn loops_on_rigid_drives(crane: &dyn Functions, moment: &StateAt<'_>) -> Vec<(usize, f64)> {
     if crane.loop_joints().is_empty() || crane.description().prescribed().is_empty() {
         return Vec::new();
     }

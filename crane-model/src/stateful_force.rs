@@ -5,7 +5,7 @@ use std::{any::Any, fmt::Debug};
 
 use nalgebra::DMatrixViewMut;
 
-use crate::{StateAt, dyn_crane::DynCrane};
+use crate::{StateAt, dyn_crane::Functions};
 
 /// Forces of one kind that have states. Indices of states are those among the states of this kind, except in [`StateAt`] and
 /// [`StatefulForce`], whose users see all states.
@@ -23,10 +23,10 @@ pub(crate) trait StatefulForces: Any + Debug + Send + Sync {
     fn supplies_power(&self) -> bool;
 
     /// The states that hold a pose at rest at a given time.
-    fn holding(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64]) -> Vec<f64>;
+    fn holding(&mut self, crane: &dyn Functions, t: f64, q: &[f64]) -> Vec<f64>;
 
     /// As [`holding`](Self::holding), with valves that have opened slightly, in either direction.
-    fn slightly_open(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
+    fn slightly_open(&mut self, crane: &dyn Functions, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
         let states = self.holding(crane, t, q);
         [states.clone(), states]
     }
@@ -35,7 +35,7 @@ pub(crate) trait StatefulForces: Any + Debug + Send + Sync {
     /// respect to the states and contains zeros before. In `moment`, `x` has only their states.
     fn evaluate(
         &mut self,
-        crane: &dyn DynCrane,
+        crane: &dyn Functions,
         moment: &StateAt<'_>,
         out: Evaluated<'_>,
         by_states: Option<DMatrixViewMut<'_, f64>>,
@@ -57,7 +57,7 @@ pub(crate) trait StatefulForces: Any + Debug + Send + Sync {
     fn forget(&mut self) {}
 
     /// Appends which branch of its law each force is on.
-    fn branches(&mut self, crane: &dyn DynCrane, moment: &StateAt<'_>, out: &mut Vec<bool>);
+    fn branches(&mut self, crane: &dyn Functions, moment: &StateAt<'_>, out: &mut Vec<bool>);
 }
 
 /// A state of a force.

@@ -8,7 +8,10 @@ use std::{
 use crane_codegen::program::Argument;
 use crane_live::rows::{BatchEvaluation, ParameterRows};
 use crane_live::{FunctionId, LiveCrane, Refusal};
-use crane_model::{Description, Tree, dyn_crane::DynCrane};
+use crane_model::{
+    Description, Tree,
+    dyn_crane::{DynCrane, Functions},
+};
 use nalgebra::Matrix4;
 use serde_json::{Map, Value};
 

@@ -10,7 +10,7 @@ use std::{
 use crane_codegen::chain::Chain;
 use crane_fmu::{description, resources};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptions};
 
 use crate::{

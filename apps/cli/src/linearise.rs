@@ -6,7 +6,7 @@ use std::{io::Write, path::Path};
 use crane_live::LiveCrane;
 use crane_model::{
     Description, LoopJointInfo,
-    dyn_crane::DynCrane,
+    dyn_crane::{DynCrane, Functions},
     dynamics, force_states,
     linear::{About, Drift, Forces, LinearModel},
     modes::{ComplexShape, DampedMode, Held, SmallMotions, damped_with_shapes, steady},

@@ -14,7 +14,7 @@ use std::{
 use crane_live::LiveCrane;
 use crane_model::{
     Description,
-    dyn_crane::DynCrane,
+    dyn_crane::{DynCrane, Functions},
     envelope::{Axes, Axis},
     linear::{About, Forces, Input, NoModel, Output, linear_model, outputs},
     margins::{self, Acting, Loop, Margins, NoMargins},

@@ -3,7 +3,7 @@
 use crane_live::LiveCrane;
 use crane_model::{
     Description,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     linear::{About, Input, LinearModel, Output, linear_model, outputs},
     nalgebra::DMatrix,
     results::Column,

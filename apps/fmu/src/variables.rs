@@ -152,7 +152,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use crane_live::LiveCrane;
-    use crane_model::dyn_crane::DynCrane;
+    use crane_model::dyn_crane::Functions;
     use crane_model::results::Peaks;
 
     use super::*;

@@ -2,7 +2,7 @@
 
 use crane_live::LiveCrane;
 use crane_model::{
-    dyn_crane::DynCrane,
+    dyn_crane::{DynCrane, Functions},
     envelope::{
         Axes, Axis, Envelope, Execution, Limit, Limits, Rating, SlewAxis, Varied, is_load, only_mass, only_point,
         range_of_loads,

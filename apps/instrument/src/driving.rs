@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use crane_live::{LiveCrane, Motion};
 use crane_model::{
-    dyn_crane::DynCrane,
+    dyn_crane::{DynCrane, Functions},
     dynamics::{InitialState, Method, Settings, without_events},
     force_states::ForceStates,
     results::{instants, quantities_at},

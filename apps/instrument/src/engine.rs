@@ -12,7 +12,7 @@ use crane_codegen::{
 use crane_live::LiveCrane;
 use crane_model::{
     Text,
-    dyn_crane::DynCrane,
+    dyn_crane::{DynCrane, Functions},
     dynamics::{Method, Settings},
     results::cautions::BEND,
     runs::{Start, record_checked},

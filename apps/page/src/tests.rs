@@ -1,5 +1,5 @@
 use crane_codegen::{SourceFile, compile};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use nalgebra::Vector3;
 
 use super::*;

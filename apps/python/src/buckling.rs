@@ -1,6 +1,6 @@
 //! Buckling, and the first order beside the second: what `crane strength --buckling` prints.
 
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::envelope::{LoadFactor, SecondOrder, load_factor, second_order};
 use crane_model::statics::Status;
 use pyo3::exceptions::PyValueError;

@@ -15,7 +15,7 @@ use crane_live::LiveCrane;
 use crane_live::imported::check_import;
 use crane_live::rows::BatchEvaluation;
 use crane_model::Description;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::runs::Start;
 use crane_page::diagram::diagram;
 use crane_page::shapes::surfaces::read_surfaces;

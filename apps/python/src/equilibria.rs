@@ -1,7 +1,7 @@
 //! Statics, row by row.
 
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::envelope::{Axis, Varied};
 use crane_model::statics::{Diagnosis, Equilibrium, Problem, RestSearch, Settings};
 use pyo3::exceptions::PyValueError;

@@ -2,7 +2,7 @@
 
 use crane_live::rows::{BatchEvaluation, ParameterRows};
 use crane_live::{FunctionId, Refusal};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::rt::lanes::f64x8;
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;

@@ -2,7 +2,7 @@
 
 use crane_live::LiveCrane;
 use crane_model::StateAt;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::Functions;
 use crane_model::force_states::{self, ForceStates};
 use crane_model::results::{quantities, quantities_at};
 use pyo3::exceptions::PyValueError;

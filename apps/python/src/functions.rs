@@ -1,7 +1,7 @@
 //! Functions of a state: arrays in, arrays out.
 
 use crane_live::FunctionId;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_quantities::{axes, quantities};
 use pyo3::prelude::*;
 

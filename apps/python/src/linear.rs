@@ -1,6 +1,6 @@
 //! Linear models about states, row by row, and margins of loops around them.
 
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::force_states;
 use crane_model::linear::{About, Forces, Input, LinearModel, Output, linear_model, outputs};
 use crane_model::margins::{self, Loop, Margins, Plant, Term};

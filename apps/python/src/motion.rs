@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use crane_live::LiveCrane;
 use crane_live::sensitivity::runs::{self, Along, run_with_adjoint, run_with_gradients};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{InitialState, Method, Settings, Statistics};
 use crane_model::results::{Column, Peaks, Recording, cautions, quantities};
 use crane_model::runs::ensemble::{self, Case, Execution};

@@ -7,7 +7,7 @@ use crane_live::FunctionId;
 use crane_live::assemble::TooLarge;
 use crane_live::machine::Batch;
 use crane_live::products::{self, PullBack, PushForward, PushForwardOfLarge};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::Functions;
 use crane_model::rt::lanes::f64x8;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -5,7 +5,7 @@ use crane_live::LiveCrane;
 use crane_live::sensitivity::{
     Differences, FixedNumber, Output, Refused, Sensitivity, Settings, sensitivity, with_live_numbers,
 };
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::runs::Failed;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

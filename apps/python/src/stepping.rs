@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use crane_live::{Hold, SteeredMotion};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{Sample, Settings, Stopped};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::runs::ensemble::Case;

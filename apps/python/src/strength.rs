@@ -2,7 +2,7 @@
 
 use crane_live::FunctionId;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::sections::stressed_sections;
 use crane_model::{Stress, tipping};
 use numpy::PyArrayDyn;

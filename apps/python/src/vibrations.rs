@@ -1,7 +1,7 @@
 //! Modes and stability about poses at rest, small motions about any motion, and steady motions, row by row.
 
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::Method;
 use crane_model::modes::{DampedMode, Held, Mode, NoModes, damped, steady, undamped};
 use crane_model::runs::limiting_modes;

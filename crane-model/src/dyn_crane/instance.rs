@@ -5,7 +5,7 @@ use crane_quantities::{FunctionId, Part, quantities};
 use nalgebra::{Matrix6, SMatrix, SVector};
 
 use super::methods::{call_sized, call_sized_row, sized};
-use super::{Arguments, Derived, DynBlock, DynCrane, DynSystem};
+use super::{Arguments, Derived, DynBlock, DynCrane, DynSystem, Functions};
 use crate::{
     CraneModel, Description, LaneDynamics, Linearisation, LoopJointInfo, ParameterError, StageInfo, rt::lanes::f64x8,
 };
@@ -53,11 +53,41 @@ impl<const N: usize, C: CraneModel<N>> Instance<N, C> {
     }
 }
 
-impl<const N: usize, C: CraneModel<N>> DynCrane for Instance<N, C> {
+impl<const N: usize, C: CraneModel<N>> Functions for Instance<N, C> {
+    fn call(&self, id: FunctionId, at: &Arguments<'_>, out: &mut [f64]) -> Derived {
+        if !id.part().is_in(C::PARTS) {
+            out.fill(f64::NAN);
+            return Derived::No;
+        }
+        quantities! { @(call_sized) [id (self.0, at, out, return self.call_other(id, at, out))] }
+        Derived::Yes
+    }
+
     fn description(&self) -> &Description {
         self.0.description()
     }
 
+    fn loop_joints(&self) -> &[LoopJointInfo] {
+        self.0.loop_joints()
+    }
+
+    fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
+        let (mut pose, mut rates) = (vector(q), vector(v));
+        self.0.prescribe(t, &mut pose, &mut rates);
+        q.copy_from_slice(pose.as_slice());
+        v.copy_from_slice(rates.as_slice());
+    }
+
+    fn size(&self) -> usize {
+        N
+    }
+
+    fn system(&self) -> Box<dyn DynSystem + '_> {
+        Box::new(InstanceSystem { crane: &self.0, factors: None })
+    }
+}
+
+impl<const N: usize, C: CraneModel<N>> DynCrane for Instance<N, C> {
     fn parents(&self) -> &[usize] {
         self.0.parents()
     }
@@ -86,10 +116,6 @@ impl<const N: usize, C: CraneModel<N>> DynCrane for Instance<N, C> {
         Box::new(self.clone())
     }
 
-    fn loop_joints(&self) -> &[LoopJointInfo] {
-        self.0.loop_joints()
-    }
-
     fn stages(&self) -> &[StageInfo] {
         self.0.stages()
     }
@@ -98,36 +124,12 @@ impl<const N: usize, C: CraneModel<N>> DynCrane for Instance<N, C> {
         self.0.stage_height(stage)
     }
 
-    fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
-        let (mut pose, mut rates) = (vector(q), vector(v));
-        self.0.prescribe(t, &mut pose, &mut rates);
-        q.copy_from_slice(pose.as_slice());
-        v.copy_from_slice(rates.as_slice());
-    }
-
-    fn size(&self) -> usize {
-        N
-    }
-
-    fn system(&self) -> Box<dyn DynSystem + '_> {
-        Box::new(InstanceSystem { crane: &self.0, factors: None })
-    }
-
     fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
         let mut cranes: [C; 8] = std::array::from_fn(|_| self.0.clone());
         for (crane, parameters) in cranes.iter_mut().zip(parameters) {
             crane.set_parameters(parameters)?;
         }
         Ok(Box::new(Block::<N, _>(C::lanes(cranes.each_ref()))))
-    }
-
-    fn call(&self, id: FunctionId, at: &Arguments<'_>, out: &mut [f64]) -> Derived {
-        if !id.part().is_in(C::PARTS) {
-            out.fill(f64::NAN);
-            return Derived::No;
-        }
-        quantities! { @(call_sized) [id (self.0, at, out, return self.call_other(id, at, out))] }
-        Derived::Yes
     }
 }
 

@@ -3,8 +3,8 @@
 use crane_quantities::Count;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
 
-use super::DynCrane;
-use crate::{CoordinateKind, CoordinateRole, Description, SectionModuli, Tension, Tree};
+use super::{DynCrane, Functions};
+use crate::{CoordinateKind, CoordinateRole, Description, SectionModuli, Tree};
 
 /// Energies of a crane, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,16 +53,14 @@ fn numbers(crane: &dyn DynCrane, write: impl FnOnce(&mut [f64])) -> Vec<f64> {
     out
 }
 
-impl dyn DynCrane + '_ {
-    /// Stiffness of every drive at rest in a pose, N m/rad or N/m; 0 for rigid drives and for drives beyond their limit.
-    pub(crate) fn drive_stiffness(&self, q: &[f64]) -> Vec<f64> {
-        let drives = &self.description().drives;
-        let (mut linear, mut limits) = (vec![[0.0; 2]; q.len()], vec![[0.0; 2]; drives.len()]);
-        self.joint_stiffness_and_damping(&mut linear);
-        self.drive_limits(0.0, q, &vec![0.0; q.len()], &mut limits);
-        // The stiffness of a drive with a limit is not among the linear ones.
-        drives.iter().zip(limits).map(|(drive, [_, limited])| linear[drive.coordinate][0].max(limited)).collect()
-    }
+/// Stiffness of every drive at rest in a pose, N m/rad or N/m; 0 for rigid drives and for drives beyond their limit.
+pub(crate) fn drive_stiffness(crane: &dyn Functions, q: &[f64]) -> Vec<f64> {
+    let drives = &crane.description().drives;
+    let (mut linear, mut limits) = (vec![[0.0; 2]; q.len()], vec![[0.0; 2]; drives.len()]);
+    crane.joint_stiffness_and_damping(&mut linear);
+    crane.drive_limits(0.0, q, &vec![0.0; q.len()], &mut limits);
+    // The stiffness of a drive with a limit is not among the linear ones.
+    drives.iter().zip(limits).map(|(drive, [_, limited])| linear[drive.coordinate][0].max(limited)).collect()
 }
 
 /// # Panics
@@ -77,20 +75,6 @@ impl dyn DynCrane + '_ {
     pub fn transforms_at(&self, q: &[f64]) -> Vec<Matrix4<f64>> {
         let mut out = vec![Matrix4::identity(); self.description().bodies.len()];
         self.transforms(q, &mut out);
-        out
-    }
-
-    /// Positions of the points of interest, m.
-    pub fn points_at(&self, q: &[f64]) -> Vec<Vector3<f64>> {
-        let mut out = vec![Vector3::zeros(); self.description().points.len()];
-        self.points(q, &mut out);
-        out
-    }
-
-    /// Velocities of the points of interest, m/s.
-    pub fn point_velocities_at(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>> {
-        let mut out = vec![Vector3::zeros(); self.description().points.len()];
-        self.point_velocities(q, v, &mut out);
         out
     }
 
@@ -114,64 +98,9 @@ impl dyn DynCrane + '_ {
         out.into_iter().map(|[limit, _]| (limit > 0.0).then_some(limit)).collect()
     }
 
-    /// Prescribed positions and rates of the drives.
-    pub fn drive_motions_at(&self, t: f64) -> Vec<[f64; 2]> {
-        let mut out = vec![[0.0; 2]; self.description().drives.len()];
-        self.drive_motions(t, &mut out);
-        out
-    }
-
     /// Prescribed positions, one per drive. [`drive_positions_at`](super::DynCrane::drive_positions_at) has them by coordinate, as functions take them.
     pub fn drive_targets_at(&self, t: f64) -> Vec<f64> {
         self.drive_motions_at(t).into_iter().map(|[position, _]| position).collect()
-    }
-
-    /// Moments that the springs and dampers between rigid elements transmit, `k q + d q̇`, one per coordinate of an element in
-    /// the order of `q`: positive if they resist a positive deformation. N m.
-    pub fn element_moments_at(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
-        let forces = numbers(self, |out| self.element_forces(q, v, out));
-        let coordinates = self.description().coordinates.iter().zip(&forces);
-        coordinates.filter(|(coordinate, _)| coordinate.role.is_element()).map(|(_, force)| -force).collect()
-    }
-
-    /// Torques and forces of the end stops on the coordinates that have them, in order: N m and N.
-    pub fn stop_efforts_at(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
-        let forces = numbers(self, |out| self.stop_forces(q, v, out));
-        self.description().stops.iter().map(|&coordinate| forces[coordinate]).collect()
-    }
-
-    /// Torques and forces of friction on the coordinates that have them, in order: N m and N.
-    pub fn friction_efforts_at(&self, v: &[f64]) -> Vec<f64> {
-        let forces = numbers(self, |out| self.friction_forces(v, out));
-        self.description().frictions.iter().map(|&coordinate| forces[coordinate]).collect()
-    }
-
-    /// Length (m) of every connector, and its rate (m/s).
-    pub fn connector_lengths_at(&self, q: &[f64], v: &[f64]) -> Vec<[f64; 2]> {
-        let mut out = vec![[0.0; 2]; self.description().connectors.len()];
-        self.connector_lengths(q, v, &mut out);
-        out
-    }
-
-    /// Force of every connector and its slopes.
-    pub fn connector_tensions_at(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<Tension> {
-        let mut out = vec![Tension::ZERO; self.description().connectors.len()];
-        self.connector_tensions(t, q, v, &mut out);
-        out
-    }
-
-    /// Forces of the supports on the crane, N.
-    pub fn support_reactions_at(&self, q: &[f64], v: &[f64]) -> Vec<Vector3<f64>> {
-        let mut out = vec![Vector3::zeros(); self.description().supports.len()];
-        self.support_reactions(q, v, &mut out);
-        out
-    }
-
-    /// Height of each one-sided support above the ground, m: negative where it is pressed in, 0 for all others.
-    pub fn support_gaps_at(&self, q: &[f64]) -> Vec<f64> {
-        let mut out = vec![[0.0; 2]; self.description().supports.len()];
-        self.support_gaps(q, &vec![0.0; q.len()], &mut out);
-        out.into_iter().map(|[gap, _]| gap).collect()
     }
 
     /// Positions of the supports' attachment points, m.
@@ -266,19 +195,6 @@ impl dyn DynCrane + '_ {
             }
         }
         [0, 1, 2].map(|axis| (held[axis] > 1.0 - ROUNDING).then_some(total[axis]))
-    }
-
-    /// Energies by part.
-    pub fn energies_at(&self, t: f64, q: &[f64], v: &[f64]) -> Energies {
-        Energies {
-            kinetic: self.kinetic_energy(q, v),
-            gravity: self.gravity_energy(q),
-            supports: self.support_energy(q),
-            elements: self.element_energy(q),
-            drives: self.drive_energy(t, q),
-            stops: self.stop_energy(q),
-            connectors: self.connector_energy(t, q),
-        }
     }
 }
 

@@ -14,7 +14,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::{
     StateAt, Tension,
-    dyn_crane::{DynCrane, DynSystem},
+    dyn_crane::{DynSystem, Functions},
     interleaved,
 };
 
@@ -54,7 +54,7 @@ struct ConnectorRow {
 
 impl ConnectorUpdate {
     /// Storage for the connectors of a crane.
-    pub fn new(crane: &dyn DynCrane) -> Self {
+    pub fn new(crane: &dyn Functions) -> Self {
         let (n, cranes) = (crane.size(), crane.cranes());
         let connectors = &crane.description().connectors;
         let count = connectors.len() / cranes;
@@ -82,7 +82,7 @@ impl ConnectorUpdate {
     /// Evaluates J, k and d at a state, and prepares solutions; `factors` are those of the system without connectors.
     pub fn factorise(
         &mut self,
-        crane: &dyn DynCrane,
+        crane: &dyn Functions,
         &StateAt { t, q, v, .. }: &StateAt<'_>,
         c: f64,
         factors: &mut dyn DynSystem,
@@ -133,7 +133,7 @@ impl ConnectorUpdate {
     }
 
     /// Whether at a state a connector resists much more or much less than where the system was factorised.
-    pub fn switched(&mut self, crane: &dyn DynCrane, &StateAt { t, q, v, .. }: &StateAt<'_>) -> bool {
+    pub fn switched(&mut self, crane: &dyn Functions, &StateAt { t, q, v, .. }: &StateAt<'_>) -> bool {
         if self.rows.is_empty() {
             return false;
         }

@@ -11,7 +11,7 @@ use super::{
     state::NotFinite,
     stopped::StepContext,
 };
-use crate::dyn_crane::DynCrane;
+use crate::dyn_crane::Functions;
 use crate::memory::{visit_count, visit_flag, visit_numbers};
 
 /// A motion integrated by [`rk4`].
@@ -63,7 +63,7 @@ impl EqualSteps {
 
 impl<'a> Rk4<'a> {
     /// Creates the motion, with the step of the settings.
-    pub fn new(crane: &'a dyn DynCrane, settings: &Settings) -> Self {
+    pub fn new(crane: &'a dyn Functions, settings: &Settings) -> Self {
         let equations = Equations::new(crane, References::none(crane));
         let n = equations.n;
         Self {

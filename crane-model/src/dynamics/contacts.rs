@@ -2,7 +2,7 @@
 
 use crane_quantities::ColumnKind;
 
-use crate::{Description, StateAt, Tension, Text, column::column_name, dyn_crane::DynCrane};
+use crate::{Description, StateAt, Tension, Text, column::column_name, dyn_crane::Functions};
 
 /// The contacts of a crane: one-sided supports, end stops, ropes and other points on the ground, in this order.
 pub struct Contacts {
@@ -16,7 +16,7 @@ pub struct Contacts {
 
 impl Contacts {
     /// The contacts of a crane.
-    pub fn new(crane: &dyn DynCrane) -> Self {
+    pub fn new(crane: &dyn Functions) -> Self {
         let Description { supports, stops, connectors, .. } = crane.description();
         Self {
             feet: (0..supports.len()).filter(|foot| supports[*foot].one_sided).collect(),
@@ -53,7 +53,7 @@ impl Contacts {
     /// its gap, m; the others are the negative force, N or N m, or 1 where there is none, so they jump when a contact begins.
     pub fn indicators(
         &mut self,
-        crane: &dyn DynCrane,
+        crane: &dyn Functions,
         &StateAt { t, q, v, .. }: &StateAt<'_>,
         mut take: impl FnMut(f64),
     ) {

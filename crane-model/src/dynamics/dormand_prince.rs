@@ -31,7 +31,7 @@ use super::{
 };
 use crate::{
     CraneModel, Part,
-    dyn_crane::{DynCrane, Instance},
+    dyn_crane::{Functions, Instance},
 };
 
 /// Stages.
@@ -83,7 +83,7 @@ pub struct DormandPrince<'a>(Adaptive<'a, Tableau>);
 
 impl<'a> DormandPrince<'a> {
     /// Creates the motion, with the tolerance of the settings.
-    pub fn new(crane: &'a dyn DynCrane, settings: &Settings) -> Self {
+    pub fn new(crane: &'a dyn Functions, settings: &Settings) -> Self {
         let equations = Equations::new(crane, References::rigid(crane));
         let norm = Norm::with_states(crane, settings.tolerance);
         Self(Adaptive::new(Tableau::new(equations.len()), equations, norm))

@@ -8,7 +8,7 @@
 use crate::memory::{Visit, visit_numbers};
 use crate::{
     StateAt,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     force_states::{ForceStates, loops_on_rigid_drives},
 };
 
@@ -34,7 +34,7 @@ pub(super) type At<'a> = &'a mut dyn FnMut(f64, &mut [f64]);
 
 /// The integrals since the beginning of a motion.
 pub(super) struct EnergyIntegrals<'a> {
-    crane: &'a dyn DynCrane,
+    crane: &'a dyn Functions,
     force_states: ForceStates,
     /// Rates of their states, which are not needed.
     rates: Vec<f64>,
@@ -51,7 +51,7 @@ pub(super) struct EnergyIntegrals<'a> {
 
 impl<'a> EnergyIntegrals<'a> {
     /// Zero at time `t`, s.
-    pub fn new(crane: &'a dyn DynCrane, t: f64, accuracy: f64) -> Self {
+    pub fn new(crane: &'a dyn Functions, t: f64, accuracy: f64) -> Self {
         let force_states = ForceStates::new(crane.description());
         let states = force_states.len();
         let motion = vec![0.0; 2 * crane.size() + states];

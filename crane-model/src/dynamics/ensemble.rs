@@ -9,16 +9,17 @@ use std::convert::Infallible;
 use nalgebra::SVector;
 
 use super::{
-    Cause, EffortAccuracy, InitialState, Method, Run, Sample, Settings, Simulation, State, Statistics, Stopped, Watch,
+    Cause, EffortAccuracy, InitialState, Integration, Method, Run, Sample, Settings, State, Statistics, Stopped, Watch,
     integration::close,
     rk4,
     settings::divided,
+    simulation::follow,
     stopped::{StepContext, check_inertia},
     stops::Stops,
 };
 use crate::{
     CoordinateRole, CraneModel, Description, LaneDynamics, ParameterError, Part, StateAt,
-    dyn_crane::{Block, DynBlock, DynCrane, Instance},
+    dyn_crane::{Block, DynBlock, DynCrane, Functions, Instance},
     force_states::ForceStates,
     loop_joints::Loops,
     rt::lanes::f64x8,
@@ -107,7 +108,7 @@ impl<const N: usize, C: CraneModel<N>> Members for &[(C, State<N>)] {
             let starts: Vec<InitialState> = cranes.iter().map(|(_, start)| start.into()).collect();
             let models: Vec<_> = cranes.iter().map(|(crane, _)| Instance::<N, _>(crane.clone())).collect();
             let models = models.iter().map(|model| model as &dyn DynCrane).collect();
-            run(index * LANES, Batch::new(&mut block, LANES, starts.iter(), models));
+            run(index * LANES, Batch::new(&mut block, starts.iter(), models));
         }
         Ok(())
     }
@@ -118,14 +119,13 @@ impl Members for (&dyn DynCrane, &[Member]) {
 
     fn in_batches(self, run: &mut dyn FnMut(usize, Batch<'_>)) -> Result<(), ParameterError> {
         let (crane, members) = self;
-        let lanes = crane.lanes();
-        for (index, members) in members.chunks(lanes).enumerate() {
+        for (index, members) in members.chunks(LANES).enumerate() {
             let parameters = |lane: usize| members[lane.min(members.len() - 1)].parameters.as_slice();
-            let mut block = crane.block(&(0..lanes).map(parameters).collect::<Vec<_>>())?;
+            let mut block = crane.block(&(0..LANES).map(parameters).collect::<Vec<_>>())?;
             let starts = members.iter().map(|member| &member.start);
             let models: Vec<_> = members.iter().map(|member| member.crane(crane)).collect::<Result<_, _>>()?;
             let models = models.iter().map(|model| model.as_ref() as &dyn DynCrane).collect();
-            run(index * lanes, Batch::new(block.as_mut(), lanes, starts, models));
+            run(index * LANES, Batch::new(block.as_mut(), starts, models));
         }
         Ok(())
     }
@@ -159,7 +159,7 @@ pub fn simulate<M: Members>(
 /// # Errors
 /// [`Stopped`] if one of the cranes does not reach the end.
 pub(crate) fn simulate_fleet(
-    fleet: &dyn DynCrane,
+    fleet: &dyn Functions,
     cranes: &[(&dyn DynCrane, InitialState)],
     settings: &Settings,
     watch: &mut dyn Watch,
@@ -172,7 +172,7 @@ pub(crate) fn simulate_fleet(
         (0..count * of_lane(0).len()).map(|index| of_lane(index % count)[index / count]).collect()
     };
     let start = InitialState { q: joined(|start| &start.q), v: joined(|start| &start.v), x: joined(|start| &start.x) };
-    let run = Simulation::new(fleet, start, settings).watch(watch)?;
+    let run = follow(Integration::new(fleet, 0.0, &start, settings)?, 0.0, settings, watch)?;
     let of_lane = |lane: usize| {
         let own = run.efforts.iter().filter(|effort| effort.coordinate % count == lane);
         let efforts = own.map(|effort| EffortAccuracy { coordinate: effort.coordinate / count, ..*effort }).collect();
@@ -192,7 +192,7 @@ fn own_start(crane: &dyn DynCrane, start: &InitialState, settings: &Settings) ->
     Ok(InitialState { q, v, x })
 }
 
-/// A block of moving cranes. Lane l of coordinate i is element `l % 8` of vector `i w + l / 8`, w vectors per coordinate.
+/// Eight moving cranes, one in each lane.
 pub struct Batch<'a> {
     block: &'a mut dyn DynBlock,
     description: &'a Description,
@@ -202,8 +202,6 @@ pub struct Batch<'a> {
     prescribes: bool,
     /// Pose and rates of a lane.
     own: [Vec<f64>; 2],
-    /// w.
-    vectors: usize,
     q: Vec<f64x8>,
     v: Vec<f64x8>,
     start: [Vec<f64x8>; 2],
@@ -213,42 +211,34 @@ pub struct Batch<'a> {
 impl<'a> Batch<'a> {
     fn new<'s>(
         block: &'a mut dyn DynBlock,
-        lanes: usize,
         starts: impl ExactSizeIterator<Item = &'s InitialState> + Clone,
         models: Vec<&'a dyn DynCrane>,
     ) -> Self {
         let description = models[0].description();
         assert!(!description.has_force_states(), "states of forces have no lanes");
         assert!(models.iter().all(|model| model.loop_joints().is_empty()), "closed loops have no lanes");
-        let (n, vectors) = (description.coordinates.len(), lanes / LANES);
+        let n = description.coordinates.len();
         let prescribes = description.coordinates.iter().any(|info| info.role == CoordinateRole::Prescribed);
-        let mut start = [(); 2].map(|()| vec![f64x8::splat(0.0); n * vectors]);
-        for (lane, state) in starts.clone().chain(starts.last().into_iter().cycle()).take(lanes).enumerate() {
+        let mut start = [(); 2].map(|()| vec![f64x8::splat(0.0); n]);
+        for (lane, state) in starts.clone().chain(starts.last().into_iter().cycle()).take(LANES).enumerate() {
             for (lanes, numbers) in start.iter_mut().zip([&state.q, &state.v]) {
                 assert_eq!(numbers.len(), n, "as many numbers as coordinates");
-                for (i, number) in numbers.iter().enumerate() {
-                    lanes[i * vectors + lane / LANES].as_mut_array()[lane % LANES] = *number;
+                for (lanes, number) in lanes.iter_mut().zip(numbers) {
+                    lanes.as_mut_array()[lane] = *number;
                 }
             }
         }
         let [q, v] = start.clone();
         let room = vec![f64x8::splat(0.0); rk4::ROOM * q.len()];
         let own = [vec![0.0; n], vec![0.0; n]];
-        let mut batch = Self { block, description, models, prescribes, own, vectors, q, v, start, room };
+        let mut batch = Self { block, description, models, prescribes, own, q, v, start, room };
         batch.prescribe(0.0);
         batch
     }
 
-    /// Copies the numbers of a lane.
-    fn lane(&self, lane: usize, of: &[f64x8], out: &mut [f64]) {
-        for (out, vectors) in out.iter_mut().zip(of.chunks(self.vectors)) {
-            *out = vectors[lane / LANES].to_array()[lane % LANES];
-        }
-    }
-
     /// Whether a lane stays within `bound`, m and rad; false for NaN.
     fn bounded(&self, lane: usize, bound: f64) -> bool {
-        self.q.iter().skip(lane / LANES).step_by(self.vectors).all(|x| x.to_array()[lane % LANES].abs() <= bound)
+        self.q.iter().all(|x| x.as_array()[lane].abs() <= bound)
     }
 
     /// Whether all lanes stay within `bound`.
@@ -261,8 +251,8 @@ impl<'a> Batch<'a> {
     /// Resets a lane to its start: unbounded numbers would slow down all lanes.
     fn reset(&mut self, lane: usize) {
         for (lanes, start) in [&mut self.q, &mut self.v].into_iter().zip(&self.start) {
-            for (x, start) in lanes.iter_mut().zip(start).skip(lane / LANES).step_by(self.vectors) {
-                x.as_mut_array()[lane % LANES] = start.to_array()[lane % LANES];
+            for (x, start) in lanes.iter_mut().zip(start) {
+                x.as_mut_array()[lane] = start.as_array()[lane];
             }
         }
     }
@@ -274,12 +264,12 @@ impl<'a> Batch<'a> {
         }
         let [mut q, mut v] = std::mem::take(&mut self.own);
         for lane in 0..self.models.len() {
-            self.lane(lane, &self.q, &mut q);
-            self.lane(lane, &self.v, &mut v);
+            copy_lane(lane, &self.q, &mut q);
+            copy_lane(lane, &self.v, &mut v);
             self.models[lane].prescribe(t, &mut q, &mut v);
             for (lanes, own) in [(&mut self.q, &q), (&mut self.v, &v)] {
-                for (vectors, x) in lanes.chunks_mut(self.vectors).zip(own) {
-                    vectors[lane / LANES].as_mut_array()[lane % LANES] = *x;
+                for (lanes, x) in lanes.iter_mut().zip(own) {
+                    lanes.as_mut_array()[lane] = *x;
                 }
             }
         }
@@ -299,7 +289,7 @@ impl<'a> Batch<'a> {
         let run =
             Run { statistics: Statistics::default(), step: settings.step_taken(), time: 0.0, efforts: Vec::new() };
         let mut results = vec![Ok(run); self.models.len()];
-        let stops = Stops::between(self.models.iter().copied(), 0.0, settings.duration);
+        let stops = Stops::between(self.models.iter().map(|model| *model as &dyn Functions), 0.0, settings.duration);
         let n = self.description.coordinates.len();
         let (mut q, mut v) = (vec![0.0; n], vec![0.0; n]);
         let intervals = divided(settings.duration, settings.output).0;
@@ -307,8 +297,8 @@ impl<'a> Batch<'a> {
         let mut begin = 0.0;
         for interval in 0..=intervals {
             for (lane, _) in results.iter().enumerate().filter(|(_, result)| result.is_ok()) {
-                self.lane(lane, &self.q, &mut q);
-                self.lane(lane, &self.v, &mut v);
+                copy_lane(lane, &self.q, &mut q);
+                copy_lane(lane, &self.v, &mut v);
                 observe(lane, &Sample::new(StateAt { t: begin, q: &q, v: &v, x: &[] }, &[]));
             }
             if results.iter().all(Result::is_err) {
@@ -344,17 +334,22 @@ impl<'a> Batch<'a> {
 
     /// Ends the runs of cranes beyond the bound.
     fn stop_lanes(&mut self, t: f64, h: f64, bound: f64, results: &mut [Result<Run, Stopped>]) {
-        for lane in 0..self.vectors * LANES {
+        for lane in 0..LANES {
             if self.bounded(lane, bound) {
                 continue;
             }
             if let Some(result @ Ok(_)) = results.get_mut(lane) {
                 let mut q = vec![0.0; self.description.coordinates.len()];
-                self.lane(lane, &self.q, &mut q);
+                copy_lane(lane, &self.q, &mut q);
                 let context = StepContext { method: Method::Rk4, t, h, q: &q, description: self.description };
                 *result = Err(context.furthest(Cause::Growth));
             }
             self.reset(lane);
         }
     }
+}
+
+/// Copies the numbers of a lane.
+fn copy_lane(lane: usize, of: &[f64x8], out: &mut [f64]) {
+    out.iter_mut().zip(of).for_each(|(out, lanes)| *out = lanes.as_array()[lane]);
 }

@@ -7,14 +7,14 @@ use super::{
 use crate::memory::{Visit, visit_count};
 use crate::{
     StateAt,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     force_states::ForceStates,
     loop_joints::{Loops, Open},
 };
 
 /// A crane, the references of its motions, and the number of evaluations of its accelerations.
 pub(super) struct Equations<'a> {
-    pub crane: &'a dyn DynCrane,
+    pub crane: &'a dyn Functions,
     /// Number of coordinates.
     pub n: usize,
     /// The references of the integrated numbers.
@@ -33,7 +33,7 @@ pub(super) struct Equations<'a> {
 
 impl<'a> Equations<'a> {
     /// The equations of a crane.
-    pub fn new(crane: &'a dyn DynCrane, references: References) -> Self {
+    pub fn new(crane: &'a dyn Functions, references: References) -> Self {
         let n = crane.size();
         let force_states = ForceStates::new(crane.description());
         let states = force_states.len();
@@ -119,7 +119,7 @@ impl<'a> Equations<'a> {
     /// take half as long. Of a crane without loops.
     pub fn shortfall(
         &mut self,
-        crane: &dyn DynCrane,
+        crane: &dyn Functions,
         t: f64,
         motion: &[f64],
         rate: &[f64],

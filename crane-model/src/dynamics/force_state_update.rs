@@ -15,7 +15,7 @@ use nalgebra::DMatrix;
 
 use crate::{
     StateAt,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     force_states::ForceStates,
     stateful_force::{ForceRow, STATES, StatefulForce},
 };
@@ -49,7 +49,7 @@ pub(crate) struct ForceStateUpdate {
 
 impl ForceStateUpdate {
     /// Storage for the forces of a crane.
-    pub fn new(crane: &dyn DynCrane) -> Self {
+    pub fn new(crane: &dyn Functions) -> Self {
         let force_states = ForceStates::new(crane.description());
         let n = crane.description().coordinates.len();
         let ([coupled, of_coupled], len) = (force_states.coupled(), force_states.len());
@@ -80,7 +80,7 @@ impl ForceStateUpdate {
     }
 
     /// Evaluates the forces at a state, and adds stiffness and damping of local forces to those of their coordinates.
-    pub fn evaluate(&mut self, crane: &dyn DynCrane, moment: &StateAt<'_>, c: f64, joints: &mut [[f64; 2]]) {
+    pub fn evaluate(&mut self, crane: &dyn Functions, moment: &StateAt<'_>, c: f64, joints: &mut [[f64; 2]]) {
         if self.force_states.is_empty() {
             return;
         }

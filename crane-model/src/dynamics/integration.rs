@@ -16,7 +16,7 @@ use super::{
 use crate::memory::{Visit, visit_count, visit_flag, visit_numbers};
 use crate::{
     StateAt,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     force_states::ForceStates,
     loop_joints::{Loops, Open},
 };
@@ -44,7 +44,7 @@ pub(super) enum Advanced {
 
 /// A run that is advanced from result to result. It keeps its step size and its history from one result to the next.
 pub struct Integration<'a, S: Stepper + ?Sized = dyn Steered + 'a> {
-    crane: &'a dyn DynCrane,
+    crane: &'a dyn Functions,
     stepper: Box<S>,
     settings: Settings,
     stops: Stops,
@@ -79,7 +79,7 @@ impl<'a> Integration<'a> {
     /// # Panics
     /// If the start does not have as many numbers as the crane has coordinates, or, unless `x` is empty, as its forces have states.
     pub fn new(
-        crane: &'a dyn DynCrane,
+        crane: &'a dyn Functions,
         begin: f64,
         start: &InitialState,
         settings: &Settings,
@@ -98,7 +98,7 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
     /// The same with a stepper made for this crane and these settings.
     pub(super) fn by(
         mut stepper: Box<S>,
-        crane: &'a dyn DynCrane,
+        crane: &'a dyn Functions,
         begin: f64,
         start: &InitialState,
         settings: &Settings,
@@ -122,7 +122,7 @@ impl<'a, S: Stepper + ?Sized> Integration<'a, S> {
         })?;
         stepper.start(begin, &motion)?;
         let end = begin + settings.duration;
-        let stops = Stops::between([crane as &dyn DynCrane], begin, end);
+        let stops = Stops::between([crane as &dyn Functions], begin, end);
         let energy = settings.audit.then(|| EnergyIntegrals::new(crane, begin, settings.tolerance));
         let settings = *settings;
         Ok(Self {
@@ -336,7 +336,7 @@ impl Integration<'_> {
 }
 
 /// Moves a start onto the loops of a crane, by the smallest change in the metric of its mass matrix.
-pub(super) fn close(crane: &dyn DynCrane, loops: &mut Loops, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
+pub(super) fn close(crane: &dyn Functions, loops: &mut Loops, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
     loops.assemble(crane, q, &mut |q, r, x| crane.solve_mass(q, r, x))?;
     loops.project(crane, q, v)
 }

@@ -3,7 +3,11 @@
 use super::{equations::Equations, references::References};
 use crate::memory::Visit;
 use crate::{
-    CoordinateKind, StateAt, dyn_crane::DynCrane, force_states::ForceStates, rt::lanes::f64x8, statics::open_guess,
+    CoordinateKind, StateAt,
+    dyn_crane::{Functions, drive_stiffness},
+    force_states::ForceStates,
+    rt::lanes::f64x8,
+    statics::open_guess,
 };
 
 /// Weight of an error of a rate relative to one of its coordinate, s: 1/ω of the slow swinging of a load, about 5 rad/s.
@@ -69,18 +73,18 @@ impl Norm {
     }
 
     /// For coordinates, rates and states of forces.
-    pub fn with_states(crane: &dyn DynCrane, tolerance: f64) -> Self {
+    pub fn with_states(crane: &dyn Functions, tolerance: f64) -> Self {
         let states = ForceStates::new(crane.description()).scales();
         Self { states, ..Self::new(crane.description().coordinates.len(), tolerance) }
     }
 
     /// Also for the drives' efforts, for a motion relative to the drives' motions.
-    pub fn with_efforts(crane: &dyn DynCrane, references: &References, tolerance: f64) -> Self {
+    pub fn with_efforts(crane: &dyn Functions, references: &References, tolerance: f64) -> Self {
         let n = crane.size();
         let mut stiffness_and_damping = vec![[0.0; 2]; n];
         crane.joint_stiffness_and_damping(&mut stiffness_and_damping);
         // At the guess, drives with an effort limit are far from it.
-        let stiffness = crane.drive_stiffness(&open_guess(crane));
+        let stiffness = drive_stiffness(crane, &open_guess(crane));
         let effort = |(drive, (coordinate, stiffness)): (usize, (usize, f64))| {
             let [_, damping] = stiffness_and_damping[coordinate];
             let drive = (!references.coordinates().any(|relative| relative == coordinate)).then_some(drive);
@@ -151,7 +155,7 @@ impl Norm {
 
     /// Records what follows from a pose and its rates at time t: the efforts where the motion is not relative to that of their drives, and the error of all
     /// due to rounding, which shorter steps cannot reduce.
-    pub fn note_state(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64]) {
+    pub fn note_state(&mut self, crane: &dyn Functions, t: f64, q: &[f64], v: &[f64]) {
         if self.efforts.iter().any(|effort| effort.drive.is_some()) {
             crane.drive_motions(t, &mut self.motions);
         }

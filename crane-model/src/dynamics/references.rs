@@ -6,7 +6,7 @@
 //! which do not depend on the stiffness. The deviation of a rigid drive is zero, with every method.
 
 use super::rk4::just_within;
-use crate::{CoordinateRole, Description, dyn_crane::DynCrane};
+use crate::{CoordinateRole, Description, dyn_crane::Functions};
 
 /// Distance from either end of a step at which derivatives of functions of time are evaluated there, relative to its length.
 pub(super) const INSIDE: f64 = 1e-7;
@@ -42,22 +42,22 @@ impl References {
     const LEAST: f64 = 1e-8;
 
     /// All driven coordinates, unless the rate of a motion jumps: a flexibly driven coordinate does not follow a jump.
-    pub fn new(crane: &dyn DynCrane) -> Self {
+    pub fn new(crane: &dyn Functions) -> Self {
         let jumps = jumps(crane);
         Self::where_drives(crane, |drive, rigid| rigid || !jumps[drive])
     }
 
     /// No coordinate.
-    pub fn none(crane: &dyn DynCrane) -> Self {
+    pub fn none(crane: &dyn Functions) -> Self {
         Self::where_drives(crane, |_, _| false)
     }
 
     /// Only the coordinates of rigid drives.
-    pub fn rigid(crane: &dyn DynCrane) -> Self {
+    pub fn rigid(crane: &dyn Functions) -> Self {
         Self::where_drives(crane, |_, rigid| rigid)
     }
 
-    fn where_drives(crane: &dyn DynCrane, has_reference: impl Fn(usize, bool) -> bool) -> Self {
+    fn where_drives(crane: &dyn Functions, has_reference: impl Fn(usize, bool) -> bool) -> Self {
         let Description { drives, coordinates, cylinders, .. } = crane.description();
         let driven = drives.iter().enumerate().map(|(drive, info)| {
             let rigid = coordinates[info.coordinate].role == CoordinateRole::Prescribed;
@@ -115,7 +115,7 @@ impl References {
     }
 
     /// The motions at a time; a step asks for those at its end several times.
-    fn evaluate(&mut self, crane: &dyn DynCrane, t: f64) {
+    fn evaluate(&mut self, crane: &dyn Functions, t: f64) {
         if self.at.to_bits() != t.to_bits() {
             crane.drive_motions(t, &mut self.motions);
             self.at = t;
@@ -123,7 +123,7 @@ impl References {
     }
 
     /// Makes a motion of `n` coordinates relative to the drives' motions.
-    pub fn make_relative(&mut self, crane: &dyn DynCrane, t: f64, n: usize, motion: &mut [f64]) {
+    pub fn make_relative(&mut self, crane: &dyn Functions, t: f64, n: usize, motion: &mut [f64]) {
         self.add(crane, t, -1.0, n, motion);
         for reference in self.driven.iter().filter(|reference| reference.rigid) {
             motion[reference.coordinate] = 0.0;
@@ -132,7 +132,7 @@ impl References {
     }
 
     /// Adds `sign (p, ṗ)` to a motion of `n` coordinates.
-    pub fn add(&mut self, crane: &dyn DynCrane, t: f64, sign: f64, n: usize, motion: &mut [f64]) {
+    pub fn add(&mut self, crane: &dyn Functions, t: f64, sign: f64, n: usize, motion: &mut [f64]) {
         if self.driven.is_empty() {
             return;
         }
@@ -145,7 +145,7 @@ impl References {
     }
 
     /// Subtracts `p̈` from accelerations.
-    pub fn subtract_accelerations(&mut self, crane: &dyn DynCrane, t: f64, accelerations: &mut [f64]) {
+    pub fn subtract_accelerations(&mut self, crane: &dyn Functions, t: f64, accelerations: &mut [f64]) {
         self.evaluate_accelerations(crane, t);
         for (reference, of_motion) in self.driven.iter().zip(&self.accelerations) {
             let acceleration = &mut accelerations[reference.coordinate];
@@ -154,7 +154,7 @@ impl References {
     }
 
     /// Adds `p̈` to accelerations.
-    pub fn add_accelerations(&mut self, crane: &dyn DynCrane, t: f64, accelerations: &mut [f64]) {
+    pub fn add_accelerations(&mut self, crane: &dyn Functions, t: f64, accelerations: &mut [f64]) {
         self.evaluate_accelerations(crane, t);
         for (reference, of_motion) in self.driven.iter().zip(&self.accelerations) {
             accelerations[reference.coordinate] += of_motion;
@@ -162,7 +162,7 @@ impl References {
     }
 
     /// `p̈` at a time. Rates are differenced within the step, because a motion may be less smooth at its ends.
-    fn evaluate_accelerations(&mut self, crane: &dyn DynCrane, t: f64) {
+    fn evaluate_accelerations(&mut self, crane: &dyn Functions, t: f64) {
         let [begin, end] = self.within;
         let at = [t, begin, end];
         if self.driven.is_empty() || self.accelerated_at.map(f64::to_bits) == at.map(f64::to_bits) {
@@ -198,7 +198,7 @@ impl References {
 }
 
 /// Whether the rate of each drive's motion jumps where one of its intervals begins or ends.
-fn jumps(crane: &dyn DynCrane) -> Vec<bool> {
+fn jumps(crane: &dyn Functions) -> Vec<bool> {
     /// Distance in time from a jump, s: no smooth motion of a crane changes its rate in such a short time.
     const BESIDE: f64 = 1e-7;
     /// A change of rate is a jump if it exceeds the change next to it by this factor.

@@ -37,7 +37,7 @@ use super::{
 use crate::memory::Visit;
 use crate::{
     CraneModel, Part,
-    dyn_crane::{DynCrane, Instance},
+    dyn_crane::{Functions, Instance},
 };
 
 /// Number of stages, and of evaluations per step: the slope at its end is the first of the next step.
@@ -122,7 +122,7 @@ pub struct Rosenbrock<'a>(Adaptive<'a, Stages<'a>>);
 
 impl<'a> Rosenbrock<'a> {
     /// Creates the motion, with the tolerance of the settings.
-    pub fn new(crane: &'a dyn DynCrane, settings: &Settings) -> Self {
+    pub fn new(crane: &'a dyn Functions, settings: &Settings) -> Self {
         let equations = Equations::new(crane, References::new(crane));
         let norm = Norm::with_efforts(crane, &equations.references, settings.tolerance);
         Self(Adaptive::new(Stages::new(crane, equations.len()), equations, norm))
@@ -143,7 +143,7 @@ pub(super) struct Stages<'a> {
 
 impl<'a> Stages<'a> {
     /// Storage for motions of this many numbers.
-    pub fn new(crane: &'a dyn DynCrane, len: usize) -> Self {
+    pub fn new(crane: &'a dyn Functions, len: usize) -> Self {
         let zeros = || vec![0.0; len];
         let [u, places] = std::array::from_fn(|_| std::array::from_fn(|_| zeros()));
         Self { system: System::new(crane).with_steeper_bristles(), u, places, rhs: zeros() }

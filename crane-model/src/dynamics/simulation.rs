@@ -111,7 +111,7 @@ impl<'a> Simulation<'a> {
 }
 
 /// Follows a motion to the end of its run, from result to result.
-fn follow<S: Stepper + ?Sized>(
+pub(super) fn follow<S: Stepper + ?Sized>(
     mut integration: Integration<'_, S>,
     begin: f64,
     settings: &Settings,

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use super::Method;
 use crate::{
     Description, Text,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     loop_joints::{Gap, Open, drives_beyond_reach},
 };
 
@@ -72,14 +72,14 @@ impl StepContext<'_> {
     }
 
     /// A run that stopped because a loop does not close.
-    pub fn open(&self, crane: &dyn DynCrane, open: Open) -> Stopped {
+    pub fn open(&self, crane: &dyn Functions, open: Open) -> Stopped {
         let Gap { joint, direction, gap, unit, .. } = Gap::new(crane, open);
         let along = if direction.is_empty() { joint } else { format!("{joint} along {direction}") };
         Stopped { coordinate: along.into(), value: gap, unit, ..self.stopped(Cause::OpenLoop, 0) }
     }
 
     /// A run that stopped because a loop that was closed opened: because of its rigid drives, if it was about to be stretched out.
-    pub fn opened(&self, crane: &dyn DynCrane, open: Open) -> Stopped {
+    pub fn opened(&self, crane: &dyn Functions, open: Open) -> Stopped {
         let stopped = self.open(crane, open);
         let drives = if crane.cranes() == 1 { drives_beyond_reach(crane, self.q) } else { Vec::new() };
         if drives.is_empty() {
@@ -97,7 +97,7 @@ impl StepContext<'_> {
 
     /// A run that stopped at a failed step: because of missing inertia if the mass matrix at its start is not positive definite,
     /// otherwise for the given cause.
-    pub fn failed(&self, cause: Cause, crane: &dyn DynCrane) -> Stopped {
+    pub fn failed(&self, cause: Cause, crane: &dyn Functions) -> Stopped {
         match check_inertia(crane, self.q) {
             Ok(()) => self.furthest(cause),
             Err(index) => self.stopped(Cause::MassMatrix, index),
@@ -109,7 +109,7 @@ impl StepContext<'_> {
 /// continue with negative ones. Otherwise returns the coordinate that is the cause.
 ///
 /// The cranes of a fleet are checked one by one, before they are one.
-pub(super) fn check_inertia(crane: &dyn DynCrane, q: &[f64]) -> Result<(), usize> {
+pub(super) fn check_inertia(crane: &dyn Functions, q: &[f64]) -> Result<(), usize> {
     if crane.cranes() > 1 {
         return Ok(());
     }

@@ -1,9 +1,9 @@
 //! Times at which steps end: between them the motions of drives and winches and the scales of loads are smooth.
 
-use crate::{Description, dyn_crane::DynCrane};
+use crate::{Description, dyn_crane::Functions};
 
 /// The next time after t at which a motion of a drive or a winch or the scale of a load is not smooth, s.
-pub fn next_stop(crane: &dyn DynCrane, t: f64) -> Option<f64> {
+pub fn next_stop(crane: &dyn Functions, t: f64) -> Option<f64> {
     Some(Stops::between([crane], t, f64::INFINITY).after(t)).filter(|stop| stop.is_finite())
 }
 
@@ -17,7 +17,7 @@ impl Stops {
 
     /// Beginnings and ends of the smooth intervals of the motions, loads and winches of some cranes, within a run from `begin` to `end`,
     /// s; if `end` is infinite, the run is as long as the motions.
-    pub fn between<'a>(cranes: impl IntoIterator<Item = &'a dyn DynCrane>, begin: f64, end: f64) -> Self {
+    pub fn between<'a>(cranes: impl IntoIterator<Item = &'a dyn Functions>, begin: f64, end: f64) -> Self {
         let mut times = Vec::new();
         for crane in cranes {
             let Description { drives, loads, connectors, .. } = crane.description();

@@ -7,7 +7,7 @@
 
 use super::{contacts::Contacts, equations::Equations};
 use crate::memory::{Visit, visit_flag, visit_flags};
-use crate::{StateAt, dyn_crane::DynCrane, force_states::ForceStates};
+use crate::{StateAt, dyn_crane::Functions, force_states::ForceStates};
 
 /// Which laws are watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +50,7 @@ impl Switches {
     const EXACT_MARGINS: [f64; 2] = [1e-9, 1e-4];
 
     /// The laws of a crane, with storage for motions of `len` numbers.
-    pub fn new(crane: &dyn DynCrane, len: usize) -> Self {
+    pub fn new(crane: &dyn Functions, len: usize) -> Self {
         let (contacts, limits) = (Contacts::new(crane), DriveLimits::new(crane));
         let states = ForceStates::new(crane.description());
         // No step allocates: a cylinder has three states and up to eleven branches, a bristle one of each, the pump two branches.
@@ -181,7 +181,7 @@ impl DriveLimits {
     /// Fraction of its limit at which a drive is in the middle of the rounded corner of its law.
     const CORNER: f64 = 0.98;
 
-    fn new(crane: &dyn DynCrane) -> Self {
+    fn new(crane: &dyn Functions) -> Self {
         let drives = &crane.description().drives;
         let (mut limits, rest) = (vec![[0.0; 2]; drives.len()], vec![0.0; crane.size()]);
         crane.drive_limits(0.0, &rest, &rest, &mut limits);
@@ -190,7 +190,7 @@ impl DriveLimits {
     }
 
     /// Appends for each drive whether it pushes, and pulls, as much as it can.
-    fn branches(&mut self, crane: &dyn DynCrane, &StateAt { t, q, v, .. }: &StateAt<'_>, out: &mut Vec<bool>) {
+    fn branches(&mut self, crane: &dyn Functions, &StateAt { t, q, v, .. }: &StateAt<'_>, out: &mut Vec<bool>) {
         if self.drives.is_empty() {
             return;
         }

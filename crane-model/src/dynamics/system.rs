@@ -21,13 +21,13 @@ use super::{
 use crate::memory::{Visit, visit_count};
 use crate::{
     Description, StateAt,
-    dyn_crane::{DynCrane, DynSystem},
+    dyn_crane::{DynSystem, Functions},
     loop_joints::Loops,
 };
 
 /// `A + cD̂ + c²K̂` of a crane, factorised.
 pub(super) struct System<'a> {
-    crane: &'a dyn DynCrane,
+    crane: &'a dyn Functions,
     factors: Box<dyn DynSystem + 'a>,
     /// Stiffness and damping on single coordinates: of linear springs and dampers, and with those of nonlinear laws added.
     linear: Vec<[f64; 2]>,
@@ -60,7 +60,7 @@ pub(super) struct System<'a> {
 
 impl<'a> System<'a> {
     /// Storage for the systems of a crane.
-    pub fn new(crane: &'a dyn DynCrane) -> Self {
+    pub fn new(crane: &'a dyn Functions) -> Self {
         let n = crane.size();
         let mut linear = vec![[0.0; 2]; n];
         crane.joint_stiffness_and_damping(&mut linear);
@@ -292,7 +292,7 @@ struct BaseMatrices {
 }
 
 impl BaseMatrices {
-    fn evaluate(&mut self, crane: &dyn DynCrane, q: &[f64], v: &[f64]) {
+    fn evaluate(&mut self, crane: &dyn Functions, q: &[f64], v: &[f64]) {
         crane.base_stiffness(q, v, &mut self.stiffness);
         crane.base_damping(q, v, &mut self.damping);
     }
@@ -302,7 +302,7 @@ impl Base {
     /// Coordinates of a base.
     const SIZE: usize = 6;
 
-    fn new(crane: &dyn DynCrane) -> Self {
+    fn new(crane: &dyn Functions) -> Self {
         let cranes = crane.cranes();
         let zeros = || vec![0.0; Self::SIZE * Self::SIZE * cranes];
         let matrices = BaseMatrices { stiffness: zeros(), damping: zeros() };
@@ -334,7 +334,7 @@ impl Base {
     }
 
     /// Whether a number of a diagonal at a state [differs] from that where the system was factorised.
-    fn switched(&mut self, crane: &dyn DynCrane, q: &[f64], v: &[f64]) -> bool {
+    fn switched(&mut self, crane: &dyn Functions, q: &[f64], v: &[f64]) -> bool {
         let [before, now] = &mut self.matrices;
         now.evaluate(crane, q, v);
         let diagonal = |numbers: &[f64], crane: usize| -> [f64; Self::SIZE] {

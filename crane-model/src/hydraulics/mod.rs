@@ -36,7 +36,7 @@ use nalgebra::{DMatrixViewMut, Vector3};
 
 use crate::{
     CylinderInfo, Description, StateAt,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     loop_joints,
     stateful_force::{Evaluated, ForceRow, ForceState, STATES, StatefulForces},
 };
@@ -119,7 +119,7 @@ impl Hydraulics {
     }
 
     /// Updates the lengths of all cylinders at this state, and with the drives at the positions that their motions prescribe.
-    fn measure(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64], v: &[f64]) {
+    fn measure(&mut self, crane: &dyn Functions, t: f64, q: &[f64], v: &[f64]) {
         crane.cylinder_states(q, v, &mut self.here);
         crane.cylinder_jacobians(q, &mut self.jacobians);
         if self.t == Some(t) {
@@ -187,7 +187,7 @@ impl StatefulForces for Hydraulics {
     }
 
     /// Shut valves, and the unloaded side at tank pressure. The cylinders also balance what loop joints transmit.
-    fn holding(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64]) -> Vec<f64> {
+    fn holding(&mut self, crane: &dyn Functions, t: f64, q: &[f64]) -> Vec<f64> {
         if self.is_empty() {
             return Vec::new();
         }
@@ -209,14 +209,14 @@ impl StatefulForces for Hydraulics {
     }
 
     /// As held, with valves that have opened slightly, towards the pump and towards the tank.
-    fn slightly_open(&mut self, crane: &dyn DynCrane, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
+    fn slightly_open(&mut self, crane: &dyn Functions, t: f64, q: &[f64]) -> [Vec<f64>; 2] {
         let holding = self.holding(crane, t, q);
         [1.0, -1.0].map(|towards| self.opened_slightly(&holding, towards))
     }
 
     fn evaluate(
         &mut self,
-        crane: &dyn DynCrane,
+        crane: &dyn Functions,
         &StateAt { t, q, v, x }: &StateAt<'_>,
         Evaluated { rates, forces, rows }: Evaluated<'_>,
         mut by_states: Option<DMatrixViewMut<'_, f64>>,
@@ -296,7 +296,7 @@ impl StatefulForces for Hydraulics {
     }
 
     /// Those of cylinders, valves and pump.
-    fn branches(&mut self, crane: &dyn DynCrane, &StateAt { t, q, v, x }: &StateAt<'_>, out: &mut Vec<bool>) {
+    fn branches(&mut self, crane: &dyn Functions, &StateAt { t, q, v, x }: &StateAt<'_>, out: &mut Vec<bool>) {
         let Some(last) = self.len().checked_sub(1) else { return };
         let p_s = x[last];
         self.measure(crane, t, q, v);

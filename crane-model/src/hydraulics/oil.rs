@@ -3,7 +3,7 @@
 use super::{CylinderState, Hydraulics};
 use crate::{
     Description, StateAt,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     stateful_force::{Evaluated, STATES, StatefulForce, StatefulForces},
 };
 
@@ -16,7 +16,7 @@ pub(crate) struct Oil {
 
 impl Oil {
     /// At a state of the crane and its oil.
-    pub fn at(crane: &dyn DynCrane, moment: &StateAt<'_>) -> Option<Self> {
+    pub fn at(crane: &dyn Functions, moment: &StateAt<'_>) -> Option<Self> {
         let x = moment.x;
         if !crane.description().has_valves() {
             return None;

@@ -1,7 +1,7 @@
 //! Servos: which cylinders have one, and their valves slightly open at rest.
 
 use super::{Hydraulics, STATES, ValveCylinder, valve::flows};
-use crate::{Description, StateAt, dyn_crane::DynCrane};
+use crate::{Description, StateAt, dyn_crane::Functions};
 
 /// How far beyond its overlap a slightly opened valve is open, as a fraction of the spool's travel.
 const SLIGHTLY: f64 = 1e-9;
@@ -42,7 +42,7 @@ pub(crate) struct Spool {
 }
 
 /// The spool of the valve of a drive, if it has one.
-pub(crate) fn spool(crane: &dyn DynCrane, moment: &StateAt<'_>, drive: usize) -> Option<Spool> {
+pub(crate) fn spool(crane: &dyn Functions, moment: &StateAt<'_>, drive: usize) -> Option<Spool> {
     /// Differences of the motion, m or rad, and m/s or rad/s.
     const DIFFERENCE: f64 = 1e-6;
     let mut oil = Hydraulics::new(crane.description());

@@ -7,7 +7,7 @@
 
 use nalgebra::Vector3;
 
-use crate::{CylinderInfo, Text, dyn_crane::DynCrane};
+use crate::{CylinderInfo, Text, dyn_crane::Functions};
 
 /// A cylinder at a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl CylinderState {
 }
 
 /// Every cylinder at a state, with the efforts of all drives there, N m and N.
-pub fn cylinders_at(crane: &dyn DynCrane, q: &[f64], v: &[f64], efforts: &[f64]) -> Vec<CylinderState> {
+pub fn cylinders_at(crane: &dyn Functions, q: &[f64], v: &[f64], efforts: &[f64]) -> Vec<CylinderState> {
     let cylinders = &crane.description().cylinders;
     let mut states = vec![Vector3::zeros(); cylinders.len()];
     crane.cylinder_states(q, v, &mut states);
@@ -69,7 +69,7 @@ pub fn cylinders_at(crane: &dyn DynCrane, q: &[f64], v: &[f64], efforts: &[f64])
 }
 
 /// The first cylinder whose linkage cannot be assembled in a pose.
-pub(crate) fn unassembled_at(crane: &dyn DynCrane, q: &[f64]) -> Option<Text> {
+pub(crate) fn unassembled_at(crane: &dyn Functions, q: &[f64]) -> Option<Text> {
     let cylinders = &crane.description().cylinders;
     let mut states = vec![Vector3::zeros(); cylinders.len()];
     crane.cylinder_states(q, &vec![0.0; q.len()], &mut states);

@@ -21,7 +21,7 @@ use crane_quantities::Count;
 use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen, Vector3};
 
 use super::Loops;
-use crate::{CoordinateKind, CoordinateRole, LoopJointInfo, dyn_crane::DynCrane};
+use crate::{CoordinateKind, CoordinateRole, LoopJointInfo, dyn_crane::Functions};
 
 /// Angle to a dead centre below which there is a caution, rad: 2°.
 pub const DEAD_CENTRE: f64 = 0.035;
@@ -72,7 +72,7 @@ struct Directions {
 impl Directions {
     /// Of the loops of a crane, evaluated at the pose; without equations if there are none but pads, which hold beams and close no linkage, and
     /// couplings.
-    fn new(crane: &dyn DynCrane, loops: &Loops, q: &[f64]) -> Self {
+    fn new(crane: &dyn Functions, loops: &Loops, q: &[f64]) -> Self {
         let (n, all) = (q.len(), crane.loop_joints());
         let mut joints = Vec::new();
         let (mut equation, mut rows) = (0, 0);
@@ -180,7 +180,7 @@ fn closes_linkage(joint: &LoopJointInfo) -> bool {
 }
 
 /// Which coordinates have a role, or are coupled to one that has it.
-fn tied(crane: &dyn DynCrane, loops: &Loops, has_role: impl Fn(CoordinateRole) -> bool) -> Vec<bool> {
+fn tied(crane: &dyn Functions, loops: &Loops, has_role: impl Fn(CoordinateRole) -> bool) -> Vec<bool> {
     let coordinates = &crane.description().coordinates;
     let n = coordinates.len();
     let mut held: Vec<bool> = coordinates.iter().map(|info| has_role(info.role)).collect();
@@ -232,7 +232,7 @@ fn across(along: &Vector3<f64>) -> [Vector3<f64>; 2] {
 
 /// Of each joint the way from its first point to its second one, and the velocity of the second relative to the first body for a unit rate of
 /// each coordinate, in the axes of the first body; m, m/rad and 1.
-fn motions(crane: &dyn DynCrane, q: &[f64], joints: &[usize]) -> Vec<(Vector3<f64>, Vec<Vector3<f64>>)> {
+fn motions(crane: &dyn Functions, q: &[f64], joints: &[usize]) -> Vec<(Vector3<f64>, Vec<Vector3<f64>>)> {
     let (description, all) = (crane.description(), crane.loop_joints());
     let mut frames = vec![Matrix4::identity(); description.bodies.len()];
     let mut attachments = vec![Vector3::zeros(); crane.count(Count::Attachments)];
@@ -286,7 +286,7 @@ impl DeadCentres {
     /// The loop nearest to a dead centre, where its equations depend on each other, and the one nearest to a dead centre of its drives, where they
     /// do not determine it; at a pose at which `loops` are closed and evaluated. The second is `None` if no drive moves a loop, or if drives hold more
     /// than the loops leave free.
-    pub fn nearest(&mut self, crane: &dyn DynCrane, loops: &Loops, q: &[f64]) -> [Option<DeadCentre>; 2] {
+    pub fn nearest(&mut self, crane: &dyn Functions, loops: &Loops, q: &[f64]) -> [Option<DeadCentre>; 2] {
         let directions = Directions::new(crane, loops, q);
         if directions.rows() == 0 {
             return [None; 2];
@@ -311,7 +311,7 @@ impl DeadCentres {
 }
 
 /// The directions at another pose with closed loops, from which a dead centre differs.
-fn closed_nearby(crane: &dyn DynCrane, q: &[f64], size: f64) -> Option<Directions> {
+fn closed_nearby(crane: &dyn Functions, q: &[f64], size: f64) -> Option<Directions> {
     let mut pose = q.to_vec();
     let joints = crane.loop_joints();
     for (j, (number, info)) in pose.iter_mut().zip(&*crane.description().coordinates).enumerate() {

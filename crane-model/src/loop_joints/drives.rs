@@ -4,11 +4,11 @@ use super::{
     Loops,
     required::{Balance, without_pushes},
 };
-use crate::dyn_crane::DynCrane;
+use crate::dyn_crane::Functions;
 
 /// Coordinates in loops that rigid drives prescribe although the loops determine them: not all of them can be prescribed. Empty if the drives
 /// leave the loops enough freedom.
-pub(crate) fn prescribed_too_much(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
+pub(crate) fn prescribed_too_much(crane: &dyn Functions, q: &[f64]) -> Vec<String> {
     let mut loops = Loops::new(crane);
     if loops.is_empty() {
         return Vec::new();
@@ -22,7 +22,7 @@ pub(crate) fn prescribed_too_much(crane: &dyn DynCrane, q: &[f64]) -> Vec<String
 }
 
 /// Cylinders with a valve whose pushes the loads of the loops do not determine.
-pub(super) fn fighting_valves(crane: &dyn DynCrane, q: &[f64], loops: &Loops) -> Option<Vec<String>> {
+pub(super) fn fighting_valves(crane: &dyn Functions, q: &[f64], loops: &Loops) -> Option<Vec<String>> {
     let description = crane.description();
     if !description.has_valves() {
         return None;

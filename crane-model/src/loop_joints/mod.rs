@@ -44,7 +44,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use crate::{CoordinateKind, Count, LoopEquationInfo, LoopJointInfo, StateAt, dyn_crane::DynCrane, interleaved};
+use crate::{CoordinateKind, Count, LoopEquationInfo, LoopJointInfo, StateAt, dyn_crane::Functions, interleaved};
 use independence::Independence;
 use of_crane::OfCrane;
 use profile::Profile;
@@ -128,7 +128,7 @@ pub(crate) struct Loops {
 
 impl Loops {
     /// Storage for the loop joints of a crane.
-    pub fn new(crane: &dyn DynCrane) -> Self {
+    pub fn new(crane: &dyn Functions) -> Self {
         let (n, cranes) = (crane.size(), crane.cranes());
         // The row of a coupling has no length of its own to compare with others, even if it transmits a torque.
         let moments = |joint: &LoopJointInfo| {
@@ -217,7 +217,7 @@ impl Loops {
     }
 
     /// φ, φ̇ and J̇ q̇ of every equation, and J.
-    pub fn evaluate(&mut self, crane: &dyn DynCrane, q: &[f64], v: &[f64]) {
+    pub fn evaluate(&mut self, crane: &dyn Functions, q: &[f64], v: &[f64]) {
         crane.loop_states(q, v, &mut self.states);
         crane.loop_jacobians(q, &mut self.jacobian);
         self.find_runs();
@@ -384,7 +384,7 @@ impl Loops {
     }
 
     /// Writes the accelerations of the open chain, and prepares to [`close`](Self::close) its loops.
-    pub fn open(&mut self, crane: &dyn DynCrane, &StateAt { t, q, v, .. }: &StateAt<'_>, accelerations: &mut [f64]) {
+    pub fn open(&mut self, crane: &dyn Functions, &StateAt { t, q, v, .. }: &StateAt<'_>, accelerations: &mut [f64]) {
         if self.is_empty() {
             crane.forward_dynamics(t, q, v, accelerations);
             return;
@@ -445,7 +445,7 @@ impl Loops {
     ///
     /// # Errors
     /// A loop does not close: one of its equations that depend on others has a gap, or the pose is too far away.
-    pub fn project(&mut self, crane: &dyn DynCrane, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
+    pub fn project(&mut self, crane: &dyn Functions, q: &mut [f64], v: &mut [f64]) -> Result<(), Open> {
         if self.is_empty() {
             return Ok(());
         }
@@ -502,7 +502,7 @@ impl Loops {
     ///
     /// # Errors
     /// It does not close; the pose is the nearest one that was found.
-    pub fn assemble(&mut self, crane: &dyn DynCrane, q: &mut [f64], solve: SolveAt<'_>) -> Result<(), Open> {
+    pub fn assemble(&mut self, crane: &dyn Functions, q: &mut [f64], solve: SolveAt<'_>) -> Result<(), Open> {
         if self.is_empty() {
             return Ok(());
         }
@@ -553,7 +553,7 @@ fn equations(rows: &[usize], cranes: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Shortens a step so that no coordinate rotates by more than [`GREATEST_ROTATION`].
-fn limit(step: &mut [f64], crane: &dyn DynCrane) {
+fn limit(step: &mut [f64], crane: &dyn Functions) {
     let coordinates = &crane.description().coordinates;
     let rotations = coordinates.iter().zip(&*step).filter(|(info, _)| info.kind == CoordinateKind::Rotation);
     let greatest = rotations.map(|(_, step)| step.abs()).fold(0.0, f64::max);

@@ -19,7 +19,7 @@ impl dyn DynCrane + '_ {
 
     /// Torques and forces of the drives, in their order: N m and N.
     pub fn drive_efforts_at(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
-        let mut efforts = self.open_drive_efforts(t, q, v);
+        let mut efforts = self.open_drive_efforts_at(t, q, v);
         let mut loops = Loops::new(self);
         if !loops.is_empty() && !self.description().prescribed().is_empty() {
             let open = self.numbers(|out| loops.open(self, &StateAt { t, q, v, x: &[] }, out));
@@ -32,12 +32,6 @@ impl dyn DynCrane + '_ {
             }
         }
         efforts
-    }
-
-    /// As [`drive_efforts_at`](Self::drive_efforts_at), with open loops.
-    pub(crate) fn open_drive_efforts(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
-        let forces = self.numbers(|out| self.drive_forces(t, q, v, out));
-        self.description().drives.iter().map(|drive| forces[drive.coordinate]).collect()
     }
 
     /// Torques and forces of the drives that hold the crane at rest at t = 0, including rigid drives: N m and N.

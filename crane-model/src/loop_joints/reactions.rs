@@ -6,7 +6,11 @@ use super::{
     dot,
     drives::{fighting_valves, prescribed_too_much},
 };
-use crate::{LoopEquationInfo, LoopJointInfo, Wrench, dyn_crane::DynCrane, wrench};
+use crate::{
+    LoopEquationInfo, LoopJointInfo, Wrench,
+    dyn_crane::{DynCrane, Functions},
+    wrench,
+};
 
 /// A loop that is open at a pose, or opens.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +29,7 @@ pub struct Gap {
 
 impl Gap {
     /// Of an equation of a crane.
-    pub(crate) fn new(crane: &dyn DynCrane, Open { equation, gap, is_rate }: Open) -> Self {
+    pub(crate) fn new(crane: &dyn Functions, Open { equation, gap, is_rate }: Open) -> Self {
         let (joint, info) = equation_of(crane.loop_joints(), equation);
         let is_coupling = joint.is_coupling();
         // That of an axis is a sine.
@@ -223,7 +227,7 @@ pub fn cautions(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
 }
 
 /// The rigid drives that hold a loop, if it is as near to a dead centre of them as it is where they moved it beyond its reach.
-pub(crate) fn drives_beyond_reach(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
+pub(crate) fn drives_beyond_reach(crane: &dyn Functions, q: &[f64]) -> Vec<String> {
     /// A loop that opens within a step is not yet in line, rad: 10°.
     const NEAR: f64 = 0.17;
     let mut loops = Loops::new(crane);
@@ -265,7 +269,7 @@ pub(crate) fn add_to_wrenches(
 /// ```text
 /// Δτ = A (q̈ − q̈_open) + Jᵀ λ
 /// ```
-pub(crate) fn on_rigid_drives(crane: &dyn DynCrane, q: &[f64], loops: &Loops, change: &[f64]) -> Vec<(usize, f64)> {
+pub(crate) fn on_rigid_drives(crane: &dyn Functions, q: &[f64], loops: &Loops, change: &[f64]) -> Vec<(usize, f64)> {
     let prescribed = &loops.prescribed;
     if prescribed.is_empty() || loops.is_empty() {
         return Vec::new();

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Loops, dot};
 use crate::least_squares::LeastSquares;
-use crate::{CoordinateRole, Description, dyn_crane::DynCrane};
+use crate::{CoordinateRole, Description, dyn_crane::Functions};
 
 /// Distances of a row from the span of others below this are zero: a sine of 1e-5, as for the choice of independent equations.
 const SINGULAR: f64 = 1e-5;
@@ -18,7 +18,7 @@ const SINGULAR: f64 = 1e-5;
 /// in the rows of the coordinates without drives if these determine λ, since the efforts of drives that hold the crane elsewhere are not
 /// known here, otherwise in all that are not prescribed. The pushes p of cylinders with a valve are unknown, too: each follows from the row
 /// of its joint. What is not determined even so, because several cylinders hold a loop together, is chosen as small as possible.
-pub(crate) fn required(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
+pub(crate) fn required(crane: &dyn Functions, t: f64, [q, v, a]: [&[f64]; 3]) -> Vec<f64> {
     let n = q.len();
     let (mut mass, mut rest, mut forces) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
     crane.mass_matrix(q, &mut mass);
@@ -45,7 +45,7 @@ pub(crate) fn required(crane: &dyn DynCrane, t: f64, [q, v, a]: [&[f64]; 3]) -> 
 }
 
 /// λ of a crane at rest, with loads and winches as at time `t` and the drives at given positions, by coordinate: `Jᵀ λ = −∂E_p/∂q`.
-pub(crate) fn at_rest(crane: &dyn DynCrane, t: f64, positions: &[f64], q: &[f64]) -> Vec<f64> {
+pub(crate) fn at_rest(crane: &dyn Functions, t: f64, positions: &[f64], q: &[f64]) -> Vec<f64> {
     let mut residual = vec![0.0; q.len()];
     crane.static_residual(t, q, positions, &mut residual);
     for entry in &mut residual {
@@ -65,7 +65,7 @@ pub(crate) fn at_rest(crane: &dyn DynCrane, t: f64, positions: &[f64], q: &[f64]
 /// ```text
 /// (J − J_j C/C_j)ᵀ λ = r − r_j C/C_j
 /// ```
-pub(super) fn without_pushes(crane: &dyn DynCrane, q: &[f64], jacobian: &mut [f64], r: &mut [f64]) {
+pub(super) fn without_pushes(crane: &dyn Functions, q: &[f64], jacobian: &mut [f64], r: &mut [f64]) {
     let Description { drives, cylinders, .. } = crane.description();
     if !crane.description().has_valves() {
         return;
@@ -84,7 +84,7 @@ pub(super) fn without_pushes(crane: &dyn DynCrane, q: &[f64], jacobian: &mut [f6
 }
 
 /// `Jᵀ λ`: the generalized forces that loop joints resist with.
-pub(crate) fn generalized(crane: &dyn DynCrane, q: &[f64], multipliers: &[f64]) -> Vec<f64> {
+pub(crate) fn generalized(crane: &dyn Functions, q: &[f64], multipliers: &[f64]) -> Vec<f64> {
     let mut rows = vec![0.0; multipliers.len() * q.len()];
     crane.loop_jacobians(q, &mut rows);
     let mut sum = vec![0.0; q.len()];

@@ -5,7 +5,7 @@ use crane_quantities::{ColumnKind, DisplayUnit, PUMP};
 use super::{Extremes, Table, column_name};
 use crate::{
     CoordinateRole, CylinderInfo, Description, DriveInfo, Text,
-    dyn_crane::DynCrane,
+    dyn_crane::{DynCrane, Functions, drive_stiffness},
     hydraulics::{CylinderState, cylinders_at},
 };
 
@@ -35,7 +35,7 @@ struct Demand {
 
 /// The flow and the power of the pump, for each crane of a fleet; `rates`: of the motions of the drives, m/s and rad/s.
 pub(super) fn pumps(
-    crane: &dyn DynCrane,
+    crane: &dyn Functions,
     q: &[f64],
     cylinders: &[CylinderState],
     rates: impl Fn(usize) -> f64,
@@ -45,7 +45,7 @@ pub(super) fn pumps(
     if cranes == 0 {
         return Vec::new();
     }
-    let stiffness = (crane as &dyn DynCrane).drive_stiffness(q);
+    let stiffness = drive_stiffness(crane, q);
     let demand = |(info, state): (&CylinderInfo, &CylinderState)| {
         let is_rigid =
             description.coordinates[description.drives[info.drive].coordinate].role == CoordinateRole::Prescribed;
@@ -97,7 +97,7 @@ pub(super) fn of_pose(crane: &dyn DynCrane, q: &[f64]) -> Vec<String> {
         return Vec::new();
     }
     let rest = vec![0.0; q.len()];
-    let stiffness = (crane as &dyn DynCrane).drive_stiffness(q);
+    let stiffness = drive_stiffness(crane, q);
     let states = cylinders_at(crane, q, &rest, &crane.drive_efforts_at_rest(q));
     let mut found = Vec::new();
     for (info, state) in description.cylinders.iter().zip(&states) {

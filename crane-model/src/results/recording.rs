@@ -7,7 +7,8 @@ use nalgebra::Vector3;
 
 use crate::{
     ConnectorInfo, CoordinateKind, Description, LoopJointInfo, StateAt, bristles,
-    dyn_crane::{DynCrane, Energies},
+    crane::{drive_efforts_with, energies_with},
+    dyn_crane::{DynCrane, Energies, Functions},
     dynamics::{Phases, Quantities, Sample},
     feet::Slid,
     force_states::{self, ForceStates},
@@ -126,7 +127,7 @@ impl<'a> Recording<'a> {
 
 /// Records the samples of a run of a fleet, for each crane what peaks and cautions need.
 pub(crate) struct FleetRecording<'a> {
-    fleet: &'a dyn DynCrane,
+    fleet: &'a dyn Functions,
     /// The samples of all, row by row.
     numbers: Vec<f64>,
     /// Columns of a crane, and where each of those of every crane is in a row of all.
@@ -137,7 +138,7 @@ pub(crate) struct FleetRecording<'a> {
 
 impl<'a> FleetRecording<'a> {
     /// A recording without samples.
-    pub fn new(fleet: &'a dyn DynCrane, crane: &dyn DynCrane) -> Self {
+    pub fn new(fleet: &'a dyn Functions, crane: &dyn DynCrane) -> Self {
         let columns = quantities_of(crane.description(), crane.loop_joints(), Extent::Peaks);
         let of_all = quantities_of(fleet.description(), fleet.loop_joints(), Extent::Peaks);
         let width = of_all.len();
@@ -216,11 +217,11 @@ struct Exerted {
 }
 
 impl Exerted {
-    fn in_motion(crane: &dyn DynCrane, moment: &StateAt<'_>) -> Self {
+    fn in_motion(crane: &dyn Functions, moment: &StateAt<'_>) -> Self {
         let &StateAt { t, q, v, .. } = moment;
         let has_loops = !crane.loop_joints().is_empty();
         Exerted {
-            efforts: crane.drive_efforts_with(moment),
+            efforts: drive_efforts_with(crane, moment),
             rates: crane.drive_motions_at(t).into_iter().map(|[_, rate]| rate).collect(),
             tensions: crane.connector_tensions_at(t, q, v).into_iter().map(|tension| tension.force).collect(),
             multipliers: if has_loops {
@@ -244,7 +245,7 @@ impl Exerted {
 
 /// Appends the quantities at a state to a row; returns the energies if they are recorded.
 fn push_quantities(
-    crane: &dyn DynCrane,
+    crane: &dyn Functions,
     extent: Extent,
     moment: &StateAt<'_>,
     Exerted { efforts, rates, tensions, multipliers }: &Exerted,
@@ -309,7 +310,7 @@ fn push_quantities(
     if !all {
         return None;
     }
-    let energies = crane.energies_with(moment, &slid);
+    let energies = energies_with(crane, moment, &slid);
     row.extend(energies.parts(crane.description()).map(|(_, energy)| energy));
     Some(energies)
 }

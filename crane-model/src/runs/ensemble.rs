@@ -109,7 +109,7 @@ pub fn run_ensemble(
     execution: &Execution<'_>,
 ) -> Vec<Outcome> {
     let way = Way::choose(crane, rows, settings);
-    let pieces = way.pieces(crane, rows);
+    let pieces = way.pieces(rows);
     let waiting = Mutex::new(pieces.iter());
     let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
     let finished = Mutex::new(Vec::with_capacity(rows.len()));
@@ -186,10 +186,10 @@ impl Way {
     }
 
     /// The rows that run together, with the index of the first: those left over by fleets, too few for one, run one by one, on as many threads.
-    fn pieces<'r>(self, crane: &dyn DynCrane, rows: &'r [Case]) -> Vec<(usize, &'r [Case])> {
+    fn pieces<'r>(self, rows: &'r [Case]) -> Vec<(usize, &'r [Case])> {
         let (together, left) = match self {
             Way::Alone => (1, 0),
-            Way::InLanes => (crane.lanes(), 0),
+            Way::InLanes => (dynamics::ensemble::LANES, 0),
             Way::AsFleet { cranes } => {
                 let last = rows.len() % cranes;
                 (cranes, if is_worth_a_fleet(last, cranes) { 0 } else { last })

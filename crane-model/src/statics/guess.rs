@@ -2,7 +2,11 @@
 
 use nalgebra::Vector3;
 
-use crate::{Count, Tension, dyn_crane::DynCrane, loop_joints::Loops};
+use crate::{
+    Count, Tension,
+    dyn_crane::{DynCrane, Functions},
+    loop_joints::Loops,
+};
 
 /// A guess within this distance of the drive's position is equal to it, m or rad: above rounding, below the differences that matter in a
 /// spec.
@@ -21,7 +25,7 @@ impl dyn DynCrane + '_ {
 
 /// The description's guess, and what follows from the parameters of the crane: drives are where their motions begin, and coordinates that follow
 /// others where their couplings are without force. Loops may be open.
-pub(crate) fn open_guess(crane: &dyn DynCrane) -> Vec<f64> {
+pub(crate) fn open_guess(crane: &dyn Functions) -> Vec<f64> {
     let mut motions = vec![[0.0; 2]; crane.description().drives.len()];
     crane.drive_motions(0.0, &mut motions);
     let mut q = guess_with(crane, motions.iter().map(|[position, _]| *position));
@@ -32,7 +36,7 @@ pub(crate) fn open_guess(crane: &dyn DynCrane) -> Vec<f64> {
 
 /// The guess with the drives at given positions, one per drive, instead of those of their motions: driven coordinates that the description
 /// has where their drives begin, and coordinates that follow them by couplings, move with them.
-pub(super) fn guess_with(crane: &dyn DynCrane, positions: impl Iterator<Item = f64>) -> Vec<f64> {
+pub(super) fn guess_with(crane: &dyn Functions, positions: impl Iterator<Item = f64>) -> Vec<f64> {
     let description = crane.description();
     let mut motions = vec![[0.0; 2]; description.drives.len()];
     crane.drive_motions(0.0, &mut motions);
@@ -50,7 +54,7 @@ pub(super) fn guess_with(crane: &dyn DynCrane, positions: impl Iterator<Item = f
 }
 
 /// Places coordinates that follow others where their couplings are without force.
-fn follow_couplings(crane: &dyn DynCrane, known: &mut [Option<f64>]) {
+fn follow_couplings(crane: &dyn Functions, known: &mut [Option<f64>]) {
     let couplings = couplings(crane);
     // A coordinate that follows one that follows another is known one pass later.
     for _ in &couplings {
@@ -69,7 +73,7 @@ fn follow_couplings(crane: &dyn DynCrane, known: &mut [Option<f64>]) {
 }
 
 /// The couplings `q_j − r q_i = c` that have a stiffness or hold exactly: c, and the rows of their coefficients.
-fn couplings(crane: &dyn DynCrane) -> Vec<(f64, Vec<f64>)> {
+fn couplings(crane: &dyn Functions) -> Vec<(f64, Vec<f64>)> {
     let (description, n) = (crane.description(), crane.size());
     let (count, equations) = (description.connectors.len(), crane.count(Count::LoopEquations));
     let zero = vec![0.0; n];

@@ -2,7 +2,11 @@
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::{CraneModel, Description, Linearisation, ParameterError, dyn_crane::DynCrane, statics};
+use crane_model::{
+    CraneModel, Description, Linearisation, ParameterError,
+    dyn_crane::{DynCrane, Functions},
+    statics,
+};
 use nalgebra::{Matrix4, SMatrix, SVector};
 
 /// A crane of `N` coordinates.

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::{
-    dyn_crane::DynCrane,
+    dyn_crane::{DynCrane, Functions},
     envelope::{Axes, Axis, Envelope, Execution, Limit, Limits, Rating, SlewAxis, Varied},
     statics::Settings,
 };

@@ -92,7 +92,7 @@ work!(ForwardDynamicsDerivatives, forward_dynamics_derivatives(
 mod tests {
     use crane_codegen::build;
     use crane_codegen::program::FunctionId;
-    use crane_model::dyn_crane::{Arguments, DynCrane};
+    use crane_model::dyn_crane::{Arguments, DynCrane, Functions};
 
     use crate::LiveCrane;
     use crate::dual::{DIRECTIONS, Dual8};

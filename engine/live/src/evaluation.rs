@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crane_codegen::program::{Argument, FunctionId, Shape};
-use crane_model::dyn_crane::{Arguments, Derived, DynCrane};
+use crane_model::dyn_crane::{Arguments, Derived, Functions};
 use crane_model::rt::derivatives::Columns;
 use crane_model::rt::fill_tangent;
 

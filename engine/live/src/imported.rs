@@ -4,7 +4,7 @@ use std::fmt;
 
 use crane_codegen::SourceFile;
 use crane_codegen::exchange::{Imported, Reference, ReferenceDynamics};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::Functions;
 
 use crate::LiveCrane;
 

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use crane_codegen::chain::Input;
 use crane_codegen::program::{self, Argument, FunctionId, PULLED_BACK, Product};
-use crane_model::dyn_crane::{Arguments, DynCrane};
+use crane_model::dyn_crane::{Arguments, Functions};
 
 use crate::LiveCrane;
 use crate::assemble::TooLarge;

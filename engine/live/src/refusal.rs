@@ -1,7 +1,7 @@
 //! Functions whose results do not follow from time, pose and rates alone, or which closed loops change.
 
 use crane_codegen::program::FunctionId;
-use crane_model::{LoopJointInfo, dyn_crane::DynCrane};
+use crane_model::{LoopJointInfo, dyn_crane::Functions};
 
 use crate::LiveCrane;
 

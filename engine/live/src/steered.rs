@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{InitialState, Run, Sample, Settings, Stopped};
 
 use crate::inputs::{Inputs, Slots, is_free, slots_of};

@@ -5,7 +5,7 @@ mod every;
 use crane_codegen::build;
 use crane_codegen::program::FunctionId;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{Arguments, DynCrane};
+use crane_model::dyn_crane::{Arguments, DynCrane, Functions};
 use crane_model::nalgebra::Matrix6;
 use crane_model::rt::lanes::f64x8;
 use every::call_every;

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use crane_codegen::build;
 use crane_codegen::program::{Count, Extent, FunctionId};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{Arguments, DynCrane, Instance};
+use crane_model::dyn_crane::{Arguments, DynCrane, Functions, Instance};
 use crane_model::dynamics::{InitialState, Settings, ensemble::Member};
 use crane_model::nalgebra::Matrix6;
 use crane_model::{ParameterError, modes, statics};

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crane_codegen::build;
 use crane_codegen::program::{Count, Extent, FunctionId, Item};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::{Arguments, DynCrane};
+use crane_model::dyn_crane::{Arguments, DynCrane, Functions};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::results::Peaks;
 use crane_model::runs::ensemble::{Case, Execution, Outcome, Reason, run_ensemble};
@@ -87,7 +87,7 @@ fn length(item: Item) -> usize {
 }
 
 /// Every number and list of a crane at a state.
-fn everything(crane: &dyn DynCrane, (q, v): (&[f64], &[f64])) -> Vec<(FunctionId, Vec<f64>)> {
+fn everything(crane: &dyn Functions, (q, v): (&[f64], &[f64])) -> Vec<(FunctionId, Vec<f64>)> {
     let r: Vec<f64> = v.iter().map(|v| 100.0 * v).collect();
     let at = Arguments { t: 0.7, q, v, a: &r, r: &r, positions: q };
     let mut all = Vec::new();

@@ -2,7 +2,7 @@
 
 use crane_live::LiveCrane;
 use crane_live::sensitivity::{Group, Output, Sensitivity, Settings, sensitivity};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use fastrand::Rng;
 
 use crate::descriptions::numbers_as_parameters;

@@ -1,7 +1,7 @@
 //! Load charts: a pose of a chart is the pose at rest of the spec whose drives hold its positions, and what governs its load is a limit.
 
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::envelope::{Axes, Axis, Condition, Envelope, Limit, Limits, Rating, Varied, only_mass};
 use crane_model::statics::{RestSearch, Settings};
 use fastrand::Rng;

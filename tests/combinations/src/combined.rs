@@ -1,7 +1,7 @@
 //! A combination of weights and loads, and the same crane with its factors written out.
 
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::Functions;
 use crane_model::envelope::only_mass;
 use fastrand::Rng;
 use serde_json::{Value, json};

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use crane_live::{LiveCrane, Motion};
 use crane_model::ColumnKind;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{Cause, InitialState, Sample, Settings, Simulation, Stopped, Watch};
 use crane_model::results::{Table, quantities_at};
 use crane_model::runs::{Failed, Reason, Start, imbalance, record};

@@ -1,6 +1,6 @@
 //! Runs of eight cranes as one against those of each crane alone.
 
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::Settings;
 use crane_model::runs::ensemble::{Case, Execution, Outcome, run_ensemble};
 use fastrand::Rng;

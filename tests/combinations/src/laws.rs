@@ -2,7 +2,7 @@
 
 use crane_codegen::chain::{Group, Law as ForceLaw, LoadAxes, Profile, Transmission};
 use crane_live::{Hold, LiveCrane, SteeredMotion};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{Contacts, InitialState, Integration, Method, Sample, Settings};
 use crane_model::envelope::{Condition, Limits};
 use crane_model::linear::{About, Forces, Input, Output, linear_model, outputs};
@@ -657,27 +657,24 @@ type State = (f64, Vec<f64>, Vec<f64>);
 
 /// Accelerations of a block of eight are those of each one alone, to the bit.
 fn lanes(crane: &LiveCrane, pose: &[f64], rng: &mut Rng) -> Option<Result<(), String>> {
-    use crane_model::dyn_crane::DynCrane;
     use crane_model::rt::lanes::f64x8;
     let n = pose.len();
     let states: Vec<_> = (0..8).map(|_| state(crane, pose, rng)).collect();
     let t = states[0].0;
     let parameters = crane.parameters().to_vec();
-    let of_lanes: Vec<&[f64]> = (0..crane.lanes()).map(|_| parameters.as_slice()).collect();
-    let mut block = crane.block(&of_lanes).ok()?;
-    let width = crane.lanes() / 8;
+    let mut block = crane.block(&[parameters.as_slice(); 8]).ok()?;
     let pack = |of: fn(&State) -> &Vec<f64>| {
         let vector = |i: usize| f64x8::from(std::array::from_fn::<f64, 8, _>(|lane| of(&states[lane])[i]));
-        (0..n).flat_map(|i| vec![vector(i); width]).collect::<Vec<_>>()
+        (0..n).map(vector).collect::<Vec<_>>()
     };
     let (q, v) = (pack(|state| &state.1), pack(|state| &state.2));
-    let mut out = vec![f64x8::from([0.0; 8]); n * width];
+    let mut out = vec![f64x8::from([0.0; 8]); n];
     block.forward_dynamics(t, &q, &v, &mut out);
     for (lane, (_, q, v)) in states.iter().enumerate() {
         let mut alone = vec![0.0; n];
         crane.forward_dynamics(t, q, v, &mut alone);
         for (i, alone) in alone.iter().enumerate() {
-            let together = out[i * width].to_array()[lane];
+            let together = out[i].to_array()[lane];
             if together.to_bits() != alone.to_bits() && together != *alone {
                 return Some(Err(format!("coordinate {i}, lane {lane}: {together:e} against {alone:e}")));
             }

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use crane_live::LiveCrane;
 use crane_live::sensitivity::runs::{Along, run_with_adjoint, run_with_gradients};
 use crane_model::CoordinateRole;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::loop_joints::Given;
 use crane_model::runs::{Measure, Start, record};

@@ -1,7 +1,7 @@
 //! Servos: those that are named as unstable, and their stable gains, against the eigenvalues of the crane whose spec has these gains.
 
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::modes::{UnstableServo, unstable_servos, with_servos};
 use fastrand::Rng;
 use serde_json::json;

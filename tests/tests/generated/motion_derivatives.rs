@@ -4,7 +4,7 @@
 use crane_codegen::chain::{Chain, Loops};
 use crane_codegen::program::{Argument, Inputs};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::Functions;
 use crane_model::nalgebra::{DMatrix, DVector};
 use crane_tests::dual::Dual;
 use crane_tests::interpreted::Interpreted;

@@ -14,6 +14,7 @@ use crane_codegen::program::FunctionId;
 use crane_live::machine::Number;
 use crane_live::{LiveCrane, Routine};
 use crane_model::dyn_crane::{DynBlock, DynCrane};
+use crane_model::dynamics::ensemble::LANES;
 use crane_model::rt::lanes::f64x8;
 
 /// Number of alternating rounds.
@@ -51,12 +52,11 @@ fn main() {
             }]);
         let mut lanes = kernel(&entry, "forward_dynamics_lanes");
         let parameters = live.parameters().to_vec();
-        let mut block = live.block(&vec![parameters.as_slice(); live.lanes()]).expect("the crane's own parameters");
-        let width = live.lanes() / 8;
+        let mut block = live.block(&[parameters.as_slice(); LANES]).expect("the crane's own parameters");
         // A call serves as many cranes as there are lanes.
         let per_call = |duration: Duration, cranes: usize| duration.div_f64(cranes as f64);
-        let [eight, in_lanes] = medians([&mut |calls| per_call(lanes.time(calls), 8), &mut |calls| {
-            per_call(in_block(&mut *block, width, &states, calls), 8 * width)
+        let [eight, in_lanes] = medians([&mut |calls| per_call(lanes.time(calls), LANES), &mut |calls| {
+            per_call(in_block(&mut *block, &states, calls), LANES)
         }]);
         let [one, other] = [making::<f64>(&live), making::<f64x8>(&live)];
         let ratio = |[time, ratio]: [f64; 2]| format!("{time:>7.3} {ratio:>5.2}");
@@ -115,10 +115,8 @@ fn states(entry: &Entry) -> Vec<State> {
     (entry.records)().chunks_exact(1 + 3 * n).map(state).collect()
 }
 
-fn in_block(block: &mut (dyn DynBlock + '_), width: usize, states: &[State], calls: u64) -> Duration {
-    let spread = |numbers: &[f64]| -> Vec<f64x8> {
-        numbers.iter().flat_map(|x| std::iter::repeat_n(f64x8::splat(*x), width)).collect()
-    };
+fn in_block(block: &mut (dyn DynBlock + '_), states: &[State], calls: u64) -> Duration {
+    let spread = |numbers: &[f64]| -> Vec<f64x8> { numbers.iter().map(|x| f64x8::splat(*x)).collect() };
     let states: Vec<_> = states.iter().map(|State { t, q, v }| (*t, spread(q), spread(v))).collect();
     let mut out = states[0].1.clone();
     let begin = Instant::now();

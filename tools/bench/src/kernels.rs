@@ -7,7 +7,7 @@ use crane_codegen::program::FunctionId;
 use crane_codegen::{SourceFile, compile, mechanics};
 use crane_live::machine::Environment;
 use crane_live::{LiveCrane, Routine};
-use crane_model::dyn_crane::{Arguments, DynCrane};
+use crane_model::dyn_crane::{Arguments, Functions};
 use crane_model::dynamics::rk4;
 use crane_model::nalgebra::{Cholesky, Matrix4, Matrix6, SMatrix, SVector};
 use crane_model::rt::lanes::f64x8;

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crane_live::LiveCrane;
 use crane_model::{
     CoordinateKind, Description,
-    dyn_crane::DynCrane,
+    dyn_crane::{DynCrane, Functions},
     envelope::{Axes, Condition, Limits, SlewAxis, Varied, only_mass, range_of_loads},
     modes::{Vibration, vibrations},
     nalgebra::Vector3,

@@ -17,7 +17,7 @@ use crane_live::sensitivity::{
 };
 use crane_model::{
     Description,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     envelope::{Axes, Envelope, SlewAxis},
 };
 use crane_page::tables::{Cell, Report};

@@ -3,7 +3,10 @@
 use crane_codegen::{Checked, CraneSpec};
 use crane_live::LiveCrane;
 use crane_live::sensitivity::{Group, Settings, with_live_numbers};
-use crane_model::{dyn_crane::DynCrane, results::KeyFigure};
+use crane_model::{
+    dyn_crane::{DynCrane, Functions},
+    results::KeyFigure,
+};
 use crane_page::tables::Cell;
 use serde_json::{Value, json};
 

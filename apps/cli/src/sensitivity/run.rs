@@ -6,7 +6,7 @@ use crane_live::LiveCrane;
 use crane_live::sensitivity::runs::{self, Along, METHOD, NotAsked, run_with_gradients};
 use crane_live::sensitivity::{self, Group, Output};
 use crane_model::{
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     results::{Column, Table},
     runs::{Measure, Start},
 };

@@ -2,7 +2,7 @@
 
 use crane_codegen::exchange::xml::Xml;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::Functions;
 
 use super::Subject;
 

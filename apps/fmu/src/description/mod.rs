@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use crane_codegen::exchange::xml::{Xml, number_text};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::Settings;
 use crane_model::force_states;
 

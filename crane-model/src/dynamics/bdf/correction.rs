@@ -3,7 +3,7 @@
 use super::{GAMMAS, ORDER, SAME, history::History};
 use crate::{
     StateAt,
-    dyn_crane::DynCrane,
+    dyn_crane::Functions,
     dynamics::{equations::Equations, motion::add, state::NotFinite, system::System},
     memory::{Visit, visit_numbers},
 };
@@ -14,7 +14,7 @@ const NEAR: f64 = 0.015;
 
 /// Newton's iteration for the next state.
 pub(super) struct Correction<'a> {
-    crane: &'a dyn DynCrane,
+    crane: &'a dyn Functions,
     pub system: System<'a>,
     /// Where the system was factorised.
     factors: FactorisedState,
@@ -46,7 +46,7 @@ struct FactorisedState {
 
 impl<'a> Correction<'a> {
     /// Storage for motions of this many numbers.
-    pub fn new(crane: &'a dyn DynCrane, len: usize) -> Self {
+    pub fn new(crane: &'a dyn Functions, len: usize) -> Self {
         let zeros = || vec![0.0; len];
         Self {
             crane,

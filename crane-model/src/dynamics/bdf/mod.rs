@@ -35,7 +35,7 @@ use super::{
 use crate::memory::{visit_count, visit_flag, visit_numbers, visit_optional};
 use crate::{
     CraneModel, Part,
-    dyn_crane::{DynCrane, Instance},
+    dyn_crane::{Functions, Instance},
     loop_joints::Open,
 };
 use correction::Correction;
@@ -142,7 +142,7 @@ impl Contraction {
 /// A motion by backward differences; steps may pass the times of results, which are interpolated.
 pub struct Bdf<'a> {
     equations: Equations<'a>,
-    crane: &'a dyn DynCrane,
+    crane: &'a dyn Functions,
     history: History,
     correction: Correction<'a>,
     control: Control,
@@ -179,7 +179,7 @@ struct Control {
 
 impl<'a> Bdf<'a> {
     /// Creates the motion, with the tolerance of the settings.
-    pub fn new(crane: &'a dyn DynCrane, settings: &Settings) -> Self {
+    pub fn new(crane: &'a dyn Functions, settings: &Settings) -> Self {
         let equations = Equations::new(crane, References::new(crane));
         let norm = Norm::with_efforts(crane, &equations.references, SHARE * settings.tolerance);
         let len = equations.len();

@@ -2,18 +2,17 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use crane_codegen::chain::Input;
 use crane_codegen::program::{Extent, FunctionId, Item};
-use crane_model::dyn_crane::{Arguments, Derived, DynBlock, DynCrane, DynSystem};
+use crane_model::dyn_crane::{Arguments, Derived, DynCrane, DynSystem, Functions};
 use crane_model::rt::lanes::f64x8;
-use crane_model::{Description, LoopJointInfo, ParameterError, StageInfo};
+use crane_model::{Description, LoopJointInfo};
 use crane_quantities::{Count, Part};
 use wide::bytemuck::{cast_slice, cast_slice_mut};
 
 use super::LiveCrane;
 use super::systems::Ready;
 use crate::evaluation::Evaluation;
-use crate::inputs::{is_free, slots_of};
+use crate::inputs::slots_of;
 use crate::machine::{Batch, Environment};
 use crate::routine::Routine;
 
@@ -76,7 +75,7 @@ impl Fleet {
             parameters: parameters.collect(),
             inputs: inputs.collect(),
             crane: crane.clone(),
-            rooms: no_rooms(),
+            rooms: std::array::from_fn(|_| Mutex::new(None)),
         }
     }
 
@@ -134,7 +133,7 @@ fn spread(results: &[f64x8], parts: impl Iterator<Item = usize>, len: usize, out
     }
 }
 
-impl DynCrane for Fleet {
+impl Functions for Fleet {
     fn call(&self, id: FunctionId, arguments: &Arguments<'_>, out: &mut [f64]) -> Derived {
         // Matrices and derivatives of a fleet would have other sizes.
         if id.extent() == Extent::Matrix || id.part().is_in(&[Part::Modes, Part::Derivatives, Part::MotionDerivatives])
@@ -161,30 +160,8 @@ impl DynCrane for Fleet {
         CRANES * self.crane.count(count)
     }
 
-    fn parents(&self) -> &[usize] {
-        self.crane.parents()
-    }
-
-    fn parameter(&self, index: usize) -> f64 {
-        self.parameters.get(index / CRANES).map_or(f64::NAN, |values| values.lane(index % CRANES))
-    }
-
-    fn input(&self, index: usize) -> Option<f64> {
-        let slots = self.inputs.as_chunks::<{ Input::SLOTS }>().0.get(index / CRANES)?;
-        let slots = slots.map(|slot| slot.lane(index % CRANES));
-        (!is_free(slots)).then_some(slots[0])
-    }
-
     fn loop_joints(&self) -> &[LoopJointInfo] {
         &self.loop_joints
-    }
-
-    fn stages(&self) -> &[StageInfo] {
-        &[]
-    }
-
-    fn stage_height(&self, _: usize) -> f64 {
-        0.0
     }
 
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
@@ -211,49 +188,6 @@ impl DynCrane for Fleet {
             given: Default::default(),
             solution: vec![],
             version: 1,
-        })
-    }
-
-    fn block(&self, _: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {
-        Ok(Box::new(Nothing))
-    }
-
-    fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
-        let mut values = self.parameters.clone();
-        if let Some(values) = values.get_mut(index / CRANES) {
-            values.as_mut_array()[index % CRANES] = value;
-        }
-        self.set_parameters(cast_slice(&values))
-    }
-
-    fn set_parameters(&mut self, values: &[f64]) -> Result<(), ParameterError> {
-        let mut parameters = self.parameters.clone();
-        cast_slice_mut(&mut parameters).iter_mut().zip(values).for_each(|(parameter, value)| *parameter = *value);
-        for crane in 0..CRANES {
-            let own: Vec<f64> = parameters.iter().map(|values| values.lane(crane)).collect();
-            self.crane.check(&own)?;
-        }
-        self.parameters = parameters;
-        self.rooms = no_rooms();
-        Ok(())
-    }
-
-    fn set_input(&mut self, index: usize, value: Option<f64>) {
-        let slots = self.inputs.as_chunks_mut::<{ Input::SLOTS }>().0.get_mut(index / CRANES);
-        for (slot, number) in slots.into_iter().flatten().zip(slots_of(value)) {
-            slot.as_mut_array()[index % CRANES] = number;
-        }
-    }
-
-    fn boxed_clone(&self) -> Box<dyn DynCrane> {
-        let Self { crane, description, loop_joints, parameters, inputs, .. } = self;
-        Box::new(Self {
-            crane: crane.clone(),
-            description: description.clone(),
-            loop_joints: loop_joints.clone(),
-            parameters: parameters.clone(),
-            inputs: inputs.clone(),
-            rooms: no_rooms(),
         })
     }
 }
@@ -290,17 +224,4 @@ impl DynSystem for FleetSystem<'_> {
             out.copy_from_slice(cast_slice(solution));
         }
     }
-}
-
-/// No cranes: their accelerations are NaN.
-struct Nothing;
-
-impl DynBlock for Nothing {
-    fn forward_dynamics(&mut self, _: f64, _: &[f64x8], _: &[f64x8], out: &mut [f64x8]) {
-        out.fill(f64x8::splat(f64::NAN));
-    }
-}
-
-fn no_rooms() -> [Mutex<Option<Room>>; FunctionId::COUNT] {
-    std::array::from_fn(|_| Mutex::new(None))
 }

@@ -1,7 +1,7 @@
 //! What loops that transmit forces add to the stiffness.
 
 use crane_codegen::program::FunctionId;
-use crane_model::dyn_crane::{Arguments, DynCrane};
+use crane_model::dyn_crane::{Arguments, Functions};
 
 use crate::LiveCrane;
 use crate::dual::{DIRECTIONS, Dual8};

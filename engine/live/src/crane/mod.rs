@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, TryLockError};
 use crane_codegen::chain::{Chain, Input};
 use crane_codegen::program::FunctionId;
 use crane_codegen::{Diagnostics, SourceFile, compile};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::rt::derivatives::Link;
 use crane_model::{Description, LoopJointInfo, ParameterError, StageInfo, fill_links};
 
@@ -171,7 +171,7 @@ impl LiveCrane {
     /// What its coordinates are attached to.
     pub(crate) fn links(&self) -> Vec<Link> {
         let mut links = vec![Link::default(); self.size()];
-        fill_links(&self.description, DynCrane::parents(self), &mut links);
+        fill_links(&self.description, self.parents(), &mut links);
         links
     }
 

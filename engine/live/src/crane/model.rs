@@ -2,7 +2,7 @@
 
 use crane_codegen::chain::BodyId;
 use crane_codegen::program::FunctionId;
-use crane_model::dyn_crane::{Arguments, Derived, DynBlock, DynCrane, DynSystem};
+use crane_model::dyn_crane::{Arguments, Derived, DynBlock, DynCrane, DynSystem, Functions};
 use crane_model::{Description, LoopJointInfo, ParameterError, StageInfo};
 
 use super::fleet::Fleet;
@@ -12,7 +12,7 @@ use super::{LiveCrane, no_rooms};
 use crate::inputs::{is_free, slots_of};
 use crate::native::is_slower_in_lanes;
 
-impl DynCrane for LiveCrane {
+impl Functions for LiveCrane {
     fn call(&self, id: FunctionId, arguments: &Arguments<'_>, out: &mut [f64]) -> Derived {
         self.with_evaluation(id, |evaluation| evaluation.call(arguments, out))
     }
@@ -21,6 +21,25 @@ impl DynCrane for LiveCrane {
         &self.description
     }
 
+    fn loop_joints(&self) -> &[LoopJointInfo] {
+        &self.loop_joints
+    }
+
+    fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
+        self.with_evaluation(FunctionId::PrescribedMotions, |motions| {
+            let motions = motions.at(&Arguments { t, ..Arguments::none() });
+            for (drive, [position, rate]) in self.chain().rigid_drives().zip(motions.as_chunks().0) {
+                (q[drive.coordinate.0], v[drive.coordinate.0]) = (*position, *rate);
+            }
+        });
+    }
+
+    fn system(&self) -> Box<dyn DynSystem + '_> {
+        Box::new(LiveSystem::new(self))
+    }
+}
+
+impl DynCrane for LiveCrane {
     fn parents(&self) -> &[usize] {
         self.library.parents()
     }
@@ -31,10 +50,6 @@ impl DynCrane for LiveCrane {
 
     fn input(&self, index: usize) -> Option<f64> {
         self.inputs.get(index).filter(|slots| !is_free(*slots)).map(|[value, ..]| value)
-    }
-
-    fn loop_joints(&self) -> &[LoopJointInfo] {
-        &self.loop_joints
     }
 
     fn stages(&self) -> &[StageInfo] {
@@ -49,15 +64,6 @@ impl DynCrane for LiveCrane {
     fn loop_stiffness(&self, q: &[f64], multipliers: &[f64], out: &mut [f64]) -> bool {
         loop_stiffness(self, q, multipliers, out);
         true
-    }
-
-    fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
-        self.with_evaluation(FunctionId::PrescribedMotions, |motions| {
-            let motions = motions.at(&Arguments { t, ..Arguments::none() });
-            for (drive, [position, rate]) in self.chain().rigid_drives().zip(motions.as_chunks().0) {
-                (q[drive.coordinate.0], v[drive.coordinate.0]) = (*position, *rate);
-            }
-        });
     }
 
     fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), ParameterError> {
@@ -83,13 +89,9 @@ impl DynCrane for LiveCrane {
         Box::new(self.clone())
     }
 
-    fn system(&self) -> Box<dyn DynSystem + '_> {
-        Box::new(LiveSystem::new(self))
-    }
-
-    fn fleet(&self, cranes: &[&dyn DynCrane]) -> Option<Box<dyn DynCrane>> {
+    fn fleet(&self, cranes: &[&dyn DynCrane]) -> Option<Box<dyn Functions>> {
         let has_fleets = self.description.has_fleets(&self.loop_joints) && !cranes.is_empty() && !is_slower_in_lanes();
-        has_fleets.then(|| -> Box<dyn DynCrane> { Box::new(Fleet::new(self, cranes)) })
+        has_fleets.then(|| -> Box<dyn Functions> { Box::new(Fleet::new(self, cranes)) })
     }
 
     fn block(&self, parameters: &[&[f64]]) -> Result<Box<dyn DynBlock + '_>, ParameterError> {

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crane_codegen::program::{Count, Extent, FunctionId};
-use crane_model::dyn_crane::{Arguments, DynCrane};
+use crane_model::dyn_crane::{Arguments, DynCrane, Functions};
 
 use crate::LiveCrane;
 use crate::evaluation::Evaluation;
@@ -143,7 +143,7 @@ impl LiveCrane {
     /// Extent of each index of a function's result for one state.
     #[must_use]
     pub fn shape(&self, function: FunctionId) -> Vec<usize> {
-        let (n, count) = (self.size(), |count: Count| DynCrane::count(self, count));
+        let (n, count) = (self.size(), |count: Count| Functions::count(self, count));
         match function {
             FunctionId::ForwardDynamicsDerivatives | FunctionId::Linearise => vec![3, n, n],
             // Also those of coordinates that do not move a body.

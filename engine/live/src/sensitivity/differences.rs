@@ -1,7 +1,7 @@
 //! Derivatives by numbers that cannot be live parameters: differences of whole cranes.
 
 use crane_codegen::{Checked, CraneSpec, check};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::runs::Failed;
 
 use super::places::Refused;

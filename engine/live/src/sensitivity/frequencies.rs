@@ -9,7 +9,7 @@
 use std::f64::consts::TAU;
 
 use crane_codegen::program::FunctionId;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::modes::{Mode, undamped};
 use crane_model::nalgebra::{DMatrix, SymmetricEigen};
 use crane_model::{CylinderInfo, Text};

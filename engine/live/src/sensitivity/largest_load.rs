@@ -13,7 +13,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use crane_model::ColumnKind;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::Functions;
 use crane_model::envelope::{Condition, Envelope, Execution, Limit, Rating, UNITS_OF_LOADS};
 use crane_model::results::{
     KeyFigure, column_name, connector_force, drive_effort, friction_utilisation, vertical_reaction,

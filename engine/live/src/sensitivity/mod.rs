@@ -35,7 +35,7 @@ mod source;
 mod strength;
 mod whole;
 
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::runs::{Failed, Reason};
 use crane_model::statics::{self, Equilibrium, Problem};
 

@@ -1,7 +1,7 @@
 //! Positions, efforts and reactions at rest.
 
 use crane_codegen::program::FunctionId;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::Functions;
 use crane_model::results::{column_name, connector_force, drive_effort, friction_utilisation, support_gap};
 use crane_model::{ColumnKind, CylinderInfo, Description};
 

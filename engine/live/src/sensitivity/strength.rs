@@ -3,7 +3,7 @@
 
 use crane_codegen::program::FunctionId;
 use crane_model::Wrench;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::results::KeyFigure;
 use crane_model::rt::derivatives::Constant;
 use crane_model::rt::lanes::Function;

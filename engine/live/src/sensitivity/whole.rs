@@ -1,6 +1,6 @@
 //! Whole changes of parameters, for what their derivatives do not show: feet that lift, other places that govern, curves.
 
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 
 use super::{Group, Sensitivity, Settings, label, sensitivity};
 use crate::LiveCrane;

@@ -3,7 +3,7 @@
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::Cut;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::nalgebra::Vector3;
 use crane_model::results::cylinders_at;

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::Functions;
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::results::{Extremes, Peaks, cautions};
 use crane_model::runs::ensemble::{self, Execution};

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::Settings;
 use crane_model::results::{CylinderState, Duties, cautions, cylinders_at};
 use crane_model::runs::{self, Start};

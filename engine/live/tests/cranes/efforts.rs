@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
 
 fn crane(text: &str) -> LiveCrane {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
 use crane_live::{Hold, LiveCrane, SteeredMotion};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{InitialState, Method, Settings, Simulation};
 use crane_model::results::{QUANTITIES, Table, instants};
 use crane_model::runs::{Start, imbalance, record, record_checked};

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
 use crane_model::runs::{Failed, Reason, Start, record};
 use crane_model::statics::{Diagnosis, Settings as Statics, Status};

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{InitialState, Method, Settings, Simulation};
 use crane_model::results::Table;
 use crane_model::runs::{self, Start};

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
 use crane_live::{Hold, LiveCrane, SteeredMotion};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{self, InitialState, Method, Sample, Settings, Watch};
 
 fn crane(text: &str) -> LiveCrane {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{InitialState, Method, Sample, Settings};
 
 /// Mass, kg, and angular frequency of the oscillator, rad/s.

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::force_states::{self, ForceStates};
 use crane_model::linear::{About, Forces, Input, LinearModel, NoModel, Output, linear_model, outputs};

@@ -2,7 +2,7 @@
 
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::modes::{Held, NotSteady, SmallMotions, damped, damped_with_shapes, steady};
 use crane_model::nalgebra::{Complex, DMatrix};
 use crane_model::statics::Settings;

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_model::DriveInfo;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::Settings;
 use crane_model::envelope::{
     Axes, Axis, Coverage, Critical, Envelope, Execution, Followed, Limit, Limits, LoadFactor, PartLimit, Rating,

@@ -2,7 +2,7 @@
 
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 
 fn shipped(name: &str) -> LiveCrane {
     let path = format!("{}/../../specs/{name}.yaml", env!("CARGO_MANIFEST_DIR"));

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::Settings;
 use crane_model::envelope::{Axes, Axis, Envelope, Execution, Limit, Limits, PartLimit, Rating, Varied};
 use crane_model::results::cautions;

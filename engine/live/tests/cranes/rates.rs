@@ -4,7 +4,7 @@ use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_live::sensitivity::runs::{Change, pull_rates, push_rates};
 use crane_model::StateAt;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::force_states::{self, ForceStates};
 
 fn shipped(name: &str) -> LiveCrane {

@@ -3,7 +3,7 @@
 use crane_codegen::build;
 use crane_live::rows::{BatchEvaluation, ParameterRows};
 use crane_live::{FunctionId, LiveCrane};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::nalgebra::{Matrix4, Vector3};
 use crane_model::rt::lanes::f64x8;
 

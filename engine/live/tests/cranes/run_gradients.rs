@@ -3,7 +3,7 @@
 use crane_codegen::{SourceFile, build};
 use crane_live::LiveCrane;
 use crane_live::sensitivity::runs::{Along, run_with_adjoint, run_with_gradients};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::results::Table;
 use crane_model::runs::{Gradients, Measure, Start, record};

@@ -5,7 +5,7 @@ use crane_live::LiveCrane;
 use crane_live::sensitivity::{
     FixedNumber, Group, LargestLoad, Refused, Sensitivity, Settings, sensitivity, sensitivity_near, with_live_numbers,
 };
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::envelope::{Axes, Envelope, Limit, Limits, PartLimit, range_of_loads};
 use crane_model::modes::undamped;
 use crane_model::results::cylinders_at;

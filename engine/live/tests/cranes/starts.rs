@@ -2,7 +2,7 @@
 
 use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::loop_joints::Given;
 use crane_model::runs::Start;
 

@@ -1,12 +1,12 @@
 //! Calls of every function of the table of quantities.
 
 use crane_codegen::program::{Extent, FunctionId, Item, Part};
-use crane_model::dyn_crane::{Arguments, DynCrane};
+use crane_model::dyn_crane::{Arguments, Functions};
 
 /// Lets `run` make each call, with results that contain other numbers before, and passes the results on. Derivatives are not
 /// among them.
 pub fn call_every(
-    crane: &dyn DynCrane,
+    crane: &dyn Functions,
     at: Arguments<'_>,
     run: &mut dyn FnMut(FunctionId, &mut dyn FnMut()),
     take: &mut dyn FnMut(FunctionId, Vec<f64>),

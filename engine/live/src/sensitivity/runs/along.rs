@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt;
 
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::{CoordinateRole, Description};
 
 use crate::LiveCrane;

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crane_codegen::chain::Input;
 use crane_codegen::program::{Argument, FunctionId};
-use crane_model::dyn_crane::{Arguments, DynCrane};
+use crane_model::dyn_crane::{Arguments, DynCrane, Functions};
 use crane_model::dynamics::gradients::{Around, CylinderSlopes, FeetSlopes, MotionAt, Numbers, Slopes};
 use crane_model::{Description, EventInfo, ParameterError};
 

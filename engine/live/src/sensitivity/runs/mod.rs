@@ -20,7 +20,7 @@ mod transposed;
 
 use std::ops::ControlFlow;
 
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::gradients::{self, Numbers};
 use crane_model::dynamics::{Method, Settings};
 use crane_model::runs::{

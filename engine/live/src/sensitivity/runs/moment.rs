@@ -3,7 +3,7 @@
 //! Rates are those of `[q, v, x]`: with the states x of forces, and on closed loops.
 
 use crane_model::Description;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::Functions;
 use crane_model::dynamics::{NotFinite, gradients};
 
 use super::Along;

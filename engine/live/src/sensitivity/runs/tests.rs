@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crane_codegen::{SourceFile, build};
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::gradients::{Around, CylinderSlopes, FeetSlopes, MotionAt, Numbers, Slopes};
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::loop_joints::Given;

@@ -3,7 +3,7 @@
 use crane_codegen::chain::Input;
 use crane_codegen::program::FunctionId;
 use crane_model::EventInfo;
-use crane_model::dyn_crane::DynCrane;
+use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::gradients::{Around, Covector, CylinderSlopes, FeetSlopes, MotionAt, Numbers, PullBacks};
 
 use super::Along;
