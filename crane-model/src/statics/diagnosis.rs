@@ -4,7 +4,9 @@ use std::fmt;
 
 use nalgebra::DVector;
 
-use super::{Equilibrium, Status, equations::Equations, newton::rounding_hides, open_guess, overloaded::overloaded};
+use super::{
+    Equilibrium, Problem, Status, equations::Equations, newton::rounding_hides, open_guess, overloaded::overloaded,
+};
 use crate::{
     CoordinateKind, CoordinateRole, Text,
     dyn_crane::DynCrane,
@@ -14,8 +16,6 @@ use crate::{
     tipping::{LinkMoment, TippingLine, lines, moments},
 };
 
-/// Tipping margin from which a crane stands on rigid feet: its own must yield too far.
-const STANDS: f64 = 0.1;
 /// Distance below which feet are in one place, m.
 const ONE_PLACE: f64 = 1e-3;
 /// Distance above the other feet from which one is in the wrong place, m.
@@ -126,7 +126,7 @@ impl Diagnosis {
                 let one_place = feet.iter().all(|foot| (foot - feet[0]).xy().norm() < ONE_PLACE);
                 Self::NoPolygon { one_place }
             }
-            Status::TipsOver { feet } => tipping(crane, &guess, feet),
+            Status::TipsOver { feet } => tipping(crane, &Problem::new(crane).standing_from(&guess), feet),
             _ => raised_foot(crane, &guess)
                 .or_else(|| too_stiff(crane, &guess))
                 .or_else(|| rounding(crane, equilibrium))
@@ -275,7 +275,7 @@ fn tipping(crane: &dyn DynCrane, q: &[f64], feet: &[Text]) -> Diagnosis {
     let Some(line) = lines.into_iter().find(|line| feet.iter().eq(line.feet.iter().map(|&foot| name(foot)))) else {
         return Diagnosis::Unknown;
     };
-    if line.margin() >= STANDS {
+    if line.margin() > 0.0 {
         return Diagnosis::Yields { margin: line.margin() };
     }
     let links = moments(crane, 0.0, [q, &rest, &rest], line.feet);
@@ -312,11 +312,15 @@ impl fmt::Display for Diagnosis {
             Self::NoPolygon { one_place: true } => f.write_str("; seen from above, all its feet are in one place"),
             Self::NoPolygon { one_place: false } => f.write_str("; seen from above, all its feet are on one line"),
             Self::Overturned { feet: [from, to], line, most: [worst, best] } => {
+                // Digits that tell them apart.
+                let moments = |digits: usize| {
+                    [line.overturning, line.stabilising].map(|moment| format!("{:.digits$}", moment / 1e3))
+                };
+                let [overturning, stabilising] =
+                    (1..4).map(moments).find(|[one, other]| one != other).unwrap_or_else(|| moments(4));
                 write!(
                     f,
-                    "; about the line {from} – {to} the overturning moment is {:.1} kN m, the stabilising one {:.1} kN m",
-                    line.overturning / 1e3,
-                    line.stabilising / 1e3
+                    "; about the line {from} – {to} the overturning moment is {overturning} kN m, the stabilising one {stabilising} kN m"
                 )?;
                 for (of_link, does, side) in [(worst, "overturns", "outside"), (best, "holds", "inside")] {
                     if let Some(LinkMoment { link, weight, moment }) = of_link {

@@ -12,6 +12,8 @@ pub(super) struct Equations<'a> {
     pub t: f64,
     /// Positions of the drives, by coordinate.
     pub positions: Vec<f64>,
+    /// Whether the base stays where it is, as if its supports did not yield.
+    holds_base: bool,
     /// What closes the loops, once the search has begun; `None` without loops.
     closed: Option<Closed>,
 }
@@ -19,12 +21,24 @@ pub(super) struct Equations<'a> {
 impl<'a> Equations<'a> {
     /// With the drives where their motions are at time `t`, s.
     pub(super) fn at(crane: &'a dyn DynCrane, t: f64) -> Self {
-        Self { crane, t, positions: crane.drive_positions_at(t), closed: None }
+        Self { crane, t, positions: crane.drive_positions_at(t), holds_base: false, closed: None }
     }
 
     /// With the drives at `positions`, one per drive.
     pub(super) fn holding(crane: &'a dyn DynCrane, t: f64, positions: &[f64]) -> Self {
-        Self { crane, t, positions: crane.description().by_coordinate(positions), closed: None }
+        let positions = crane.description().by_coordinate(positions);
+        Self { crane, t, positions, holds_base: false, closed: None }
+    }
+
+    /// With the base held where a search begins.
+    pub(super) fn with_held_base(self) -> Self {
+        Self { holds_base: true, ..self }
+    }
+
+    /// The coordinates of the base, if it is held.
+    fn held(&self) -> impl Iterator<Item = usize> {
+        let coordinates = self.crane.description().coordinates.iter().enumerate();
+        coordinates.filter(|(_, info)| self.holds_base && info.role == CoordinateRole::Base).map(|(index, _)| index)
     }
 
     /// Sets the coordinates of rigid drives, which have no residual, to the positions of these drives.
@@ -73,7 +87,7 @@ impl<'a> Equations<'a> {
     }
 
     fn friction_of_sliding(&self, q: &DVector<f64>) -> Option<DMatrix<f64>> {
-        if !self.crane.description().has_feet() {
+        if self.holds_base || !self.crane.description().has_feet() {
             return None;
         }
         Feet::at_rest(self.crane, q.as_slice()).sliding_stiffness(self.crane.description())
@@ -113,6 +127,7 @@ impl<'a> Equations<'a> {
     pub(super) fn open_residual(&self, q: &DVector<f64>) -> DVector<f64> {
         let mut residual = DVector::zeros(q.len());
         self.crane.static_residual(self.t, q.as_slice(), &self.positions, residual.as_mut_slice());
+        self.held().for_each(|index| residual[index] = 0.0);
         residual
     }
 
@@ -120,6 +135,11 @@ impl<'a> Equations<'a> {
     fn open_stiffness(&self, q: &DVector<f64>) -> DMatrix<f64> {
         let mut stiffness = DMatrix::zeros(q.len(), q.len());
         self.crane.tangent_stiffness(self.t, q.as_slice(), &self.positions, stiffness.as_mut_slice());
+        for index in self.held() {
+            stiffness.row_mut(index).fill(0.0);
+            stiffness.column_mut(index).fill(0.0);
+            stiffness[(index, index)] = 1.0;
+        }
         stiffness
     }
 }

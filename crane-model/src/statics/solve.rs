@@ -96,7 +96,14 @@ impl<'a> Problem<'a> {
             &guess
         };
         let equilibrium = search(&mut self.equations(), from, &self.settings);
-        with_tipped_status(&*self.crane, self.t, from, equilibrium)
+        with_tipped_status(&*self.crane, self.t, from, equilibrium, &|| self.standing_from(from))
+    }
+
+    /// The pose at rest with the base held where it is in the pose `from`: what the moments about tipping lines follow from, if the crane has no pose on its
+    /// feet. `from` itself, if none is found.
+    pub(super) fn standing_from(&self, from: &[f64]) -> Vec<f64> {
+        let equilibrium = search(&mut self.equations().with_held_base(), from, &self.settings);
+        if equilibrium.is_stable() { equilibrium.q } else { from.to_vec() }
     }
 
     /// `ln det K` at the pose `q`, in equilibrium or not, of the factors of Cholesky, which are a tenth of the work of a Newton step; `None` if a direction has a

@@ -15,8 +15,14 @@ const LITTLE: f64 = 0.1;
 const AT_REST: f64 = 1e-6;
 
 /// The equilibrium at time `t`, s, that was found from the pose `from`; its status becomes that the crane tips over, or that it floats, if it has
-/// feet that lift and the pose found is not stable or its base is not upright.
-pub(crate) fn with_tipped_status(crane: &dyn DynCrane, t: f64, from: &[f64], equilibrium: Equilibrium) -> Equilibrium {
+/// feet that lift and the pose found is not stable or its base is not upright. `standing`: the pose at rest with its base held.
+pub(super) fn with_tipped_status(
+    crane: &dyn DynCrane,
+    t: f64,
+    from: &[f64],
+    equilibrium: Equilibrium,
+    standing: &dyn Fn() -> Vec<f64>,
+) -> Equilibrium {
     let description = crane.description();
     let feet = || description.supports.iter().filter(|support| support.one_sided);
     let fell = description.has_tipped(from, &equilibrium.q);
@@ -25,13 +31,14 @@ pub(crate) fn with_tipped_status(crane: &dyn DynCrane, t: f64, from: &[f64], equ
     if feet().next().is_none() || stands && !fell {
         return equilibrium;
     }
-    if upwards(crane, t, from).is_some_and(|force| force > 0.0) {
+    let standing = standing();
+    if upwards(crane, t, &standing).is_some_and(|force| force > 0.0) {
         return Equilibrium { status: Status::Floats, ..equilibrium };
     }
     let rest = vec![0.0; from.len()];
-    let lines = lines(crane, t, from, &rest, &rest);
+    let lines = lines(crane, t, &standing, &rest, &rest);
     let names: Vec<Text> = match governing(&lines) {
-        Some(line) if fell || line.margin() < LITTLE => {
+        Some(line) if fell || line.margin() < LITTLE && !is_held_from_outside(crane, t, &standing) => {
             line.feet.iter().map(|&foot| description.supports[foot].name.clone()).collect()
         }
         // In a plane there are no tipping lines: name the feet that still press.
@@ -43,4 +50,14 @@ pub(crate) fn with_tipped_status(crane: &dyn DynCrane, t: f64, from: &[f64], equ
         _ => return equilibrium,
     };
     Equilibrium { status: Status::TipsOver { feet: names }, ..equilibrium }
+}
+
+/// Whether a connector to the world pulls or pushes in a pose: its force changes with the motion of the base, so that moments about tipping lines in this
+/// pose do not decide.
+fn is_held_from_outside(crane: &dyn DynCrane, t: f64, q: &[f64]) -> bool {
+    let tensions = crane.connector_tensions_at(t, q, &vec![0.0; q.len()]);
+    let connectors = crane.description().connectors.iter().zip(tensions);
+    connectors
+        .into_iter()
+        .any(|(info, tension)| tension.force != 0.0 && info.points.iter().any(|point| point.body.is_none()))
 }

@@ -3,7 +3,7 @@
 //! ```
 //! use crane_codegen::SourceFile;
 //! use crane_live::LiveCrane;
-//! use crane_model::dyn_crane::{DynCrane};
+//! use crane_model::dyn_crane::Functions;
 //!
 //! let text = "
 //! format: 1
