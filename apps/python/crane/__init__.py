@@ -15,21 +15,13 @@ so do live parameters that are arrays. Batches run on all threads, without Pytho
 from importlib import metadata
 
 from . import experiments
-from ._native import (
-    InvalidRowWarning,
-    NoEquilibrium,
-    ParameterError,
-    SpecError,
-    SpecWarning,
-    set_threads,
-    shipped,
-    threads,
-)
+from ._native import set_threads, shipped, threads
 from .damage import Cycle, Fatigue, fatigue
 from .fit_result import Band, Fit
 from .fitting import fit
 from .frames import Frames
 from .joints import JointStates
+from .mistakes import InvalidRowWarning, NoEquilibrium, ParameterError, SpecError, SpecWarning
 from .model import Crane, from_mjcf, from_urdf, load
 from .results import (
     Buckling,

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native, state_space
-from ._native import NoEquilibrium, real_array
+from ._native import real_array
 from .closed import Closed
 from .frames import Frames, Place
 from .joints import JointStates, coordinates_of, joint_states
+from .mistakes import NoEquilibrium
 from .notebook import embed
 from .results import (
     Array,

@@ -11,6 +11,8 @@ use pyo3::types::{IntoPyDict, PyFloat, PyInt, PyString};
 use crane_codegen::units::number_in;
 use crane_model::Description;
 
+use crate::types::{ArrayLike, Numbers};
+
 /// An argument: numbers, row after row, over leading axes.
 #[derive(Clone, Debug, Default)]
 pub struct Argument {
@@ -117,14 +119,18 @@ fn read_numbers(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<usize>, 
     {
         return Ok((array.shape().to_vec(), numbers));
     }
-    let array = real_array(name, object)?;
+    let array = convert(object.py(), name, object)?;
     Ok((array.shape().to_vec(), array.to_vec()?))
 }
 
 /// A new array of the numbers of anything that `NumPy` converts to an array of real numbers; masked ones are NaN.
+/// `TypeError` names what is none.
 #[pyfunction]
-pub fn real_array<'py>(name: &str, object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let py = object.py();
+pub fn real_array<'py>(py: Python<'py>, name: &str, object: ArrayLike<'py>) -> PyResult<Numbers<'py>> {
+    convert(py, name, &object).map(Numbers::from)
+}
+
+fn convert<'py>(py: Python<'py>, name: &str, object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let numpy = py.import(intern!(py, "numpy"))?;
     let given = numpy.call_method1(intern!(py, "asanyarray"), (object,)).map_err(|error| {
         let wrong = PyTypeError::new_err(format!("{name} is not an array of numbers: {}", error.value(py)));

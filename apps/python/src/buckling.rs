@@ -9,12 +9,13 @@ use pyo3::types::PyDict;
 
 use crate::arrays::array;
 use crate::crane::Crane;
+use crate::types::Dict;
 
 #[pymethods]
 impl Crane {
     /// Critical factors of weight and loads, and displacements and bending moments by both orders: `Crane.buckling` names them. None if the crane does not rest.
     #[pyo3(name = "_buckling")]
-    fn buckling<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+    fn buckling<'py>(&self, py: Python<'py>) -> PyResult<Option<Dict<'py>>> {
         if !self.is_single() {
             return Err(PyValueError::new_err("the parameters are arrays: buckling is that of one crane"));
         }
@@ -43,6 +44,6 @@ impl Crane {
         all.set_item("places", beams.iter().map(|(place, _)| place.location(description)).collect::<Vec<_>>())?;
         let moments = beams.iter().flat_map(|(_, moments)| *moments).collect();
         all.set_item("moments", array(py, moments, &[beams.len()], &[2])?)?;
-        Ok(Some(all))
+        Ok(Some(all.into()))
     }
 }

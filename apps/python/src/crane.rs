@@ -25,8 +25,9 @@ use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyRuntimeError, PyTypeErr
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
 
-use crate::arrays::{Argument, Joined};
+use crate::arrays::{Argument, Joined, array};
 use crate::mistakes::{self, BadRow, Invalid, ParameterError, spec_error, warn, warn_of_rows, warn_of_spec};
+use crate::types::{Array, Dict, Numbers, hints};
 
 /// A crane with its parameters: native part of `crane.Crane`.
 #[pyclass(frozen, subclass, module = "crane._native")]
@@ -150,11 +151,12 @@ impl Crane {
         py: Python<'_>,
         named: &str,
         text: Option<&str>,
-        parameters: Option<&Bound<'_, PyDict>>,
+        parameters: Option<Dict<'_, hints::ArrayLike>>,
         invalid: &str,
         like: Option<&Bound<'_, Crane>>,
-        inputs: Option<&Bound<'_, PyDict>>,
+        inputs: Option<Dict<'_, Option<hints::Float>>>,
     ) -> PyResult<Self> {
+        let (parameters, inputs) = (parameters.as_deref(), inputs.as_deref());
         let invalid = Invalid::named(invalid)?;
         if let Some(like) = like {
             return like.get().with_others(py, parameters, invalid)?.with_inputs(inputs);
@@ -192,11 +194,13 @@ impl Crane {
         Self::with(py, LiveCrane::new(chain), source, parameters, invalid)?.with_inputs(inputs)
     }
 
+    /// Name of the crane.
     #[getter]
     fn name(&self) -> &str {
         &self.live.description().name
     }
 
+    /// One line about it.
     #[getter]
     fn title(&self) -> &str {
         &self.live.description().title
@@ -214,15 +218,16 @@ impl Crane {
         self.live.description().coordinates.iter().map(|coordinate| &*coordinate.name).collect()
     }
 
+    /// Its spec, YAML.
     #[getter]
     fn spec(&self) -> &str {
         &self.source.text
     }
 
-    /// Its spec with changes, keys with what is laid over their values: a spec that extends it, in one text.
+    /// Its spec with changes, keys with what is laid over their values, None to remove them: a spec that `load(text=...)` takes.
     #[pyo3(name = "_changed")]
-    fn changed(&self, changes: &Bound<'_, PyAny>) -> PyResult<String> {
-        Ok(self.source.changed(&change(changes)?.text()).text)
+    fn changed(&self, changes: Dict<'_>) -> PyResult<String> {
+        Ok(self.source.changed(&Change::keys(entries(&changes)?).text()).text)
     }
 
     /// Its spec with a beam in the place of a rigid link, from the link's frame to another one's, or to a point in it; `keys` are those of the beam.
@@ -233,21 +238,21 @@ impl Crane {
         link: &str,
         to: Option<&str>,
         point: Option<[f64; 3]>,
-        keys: &Bound<'_, PyDict>,
+        keys: Dict<'_>,
     ) -> PyResult<String> {
         let end = match (to, point) {
             (Some(to), _) => BeamEnd::Named(to),
             (None, Some(point)) => BeamEnd::Point(point),
             (None, None) => BeamEnd::Next,
         };
-        match edit::with_beam(&self.source, link, end, entries(keys)?) {
+        match edit::with_beam(&self.source, link, end, entries(&keys)?) {
             Ok(changed) => Ok(changed.text),
             Err(Unbending::Mistakes(diagnostics)) => Err(spec_error(py, &diagnostics)),
             Err(Unbending::Refused(why)) => Err(PyValueError::new_err(why)),
         }
     }
 
-    /// Names of the bodies of a link besides its own.
+    /// Names of the bodies of a link besides its own: of a robot, what its file fixes to the link.
     #[pyo3(name = "_fixed_bodies")]
     fn fixed_bodies(&self, link: &str) -> Vec<String> {
         edit::fixed_bodies(&self.source, link)
@@ -259,16 +264,19 @@ impl Crane {
         self.live.chain().combinations.iter().map(|combination| combination.name.as_str()).collect()
     }
 
+    /// Hash of the spec.
     #[getter]
     fn spec_hash(&self) -> &str {
         &self.live.description().spec_hash
     }
 
+    /// Origin of the spec, as shown in messages.
     #[getter]
     fn source(&self) -> &str {
         &self.source.name
     }
 
+    /// Leading axes of the parameters; empty where all are numbers.
     #[getter]
     fn shape(&self) -> Vec<usize> {
         self.parameters.shape.clone()
@@ -276,14 +284,14 @@ impl Crane {
 
     /// Inputs that are set, by name.
     #[getter]
-    fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py, hints::Float>> {
         let all = PyDict::new(py);
         for (index, info) in self.live.description().inputs.iter().enumerate() {
             if let Some(value) = self.live.input(index) {
                 all.set_item(&*info.name, value)?;
             }
         }
-        Ok(all)
+        Ok(all.into())
     }
 
     /// Least and greatest values of inputs that are efforts of drives with a `max_effort`, N m or N, by name.
@@ -332,13 +340,13 @@ impl Crane {
         let values: Vec<f64> = values.collect();
         match (values.as_slice(), self.parameters.shape.as_slice()) {
             ([value], []) => Ok(value.into_pyobject(py)?.into_any()),
-            _ => Ok(crate::arrays::array(py, values, &self.parameters.shape, &[])?.into_any()),
+            _ => Ok(array(py, values, &self.parameters.shape, &[])?.into_any()),
         }
     }
 
     /// (..., frames, 4, 4): poses of the frames that the spec names, each in the frame of its body, or in the world; m.
     #[pyo3(name = "_frame_poses")]
-    fn frame_poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn frame_poses<'py>(&self, py: Python<'py>) -> Array<'py> {
         let chain = self.live.chain();
         let poses = crate::parallel::map_rows(py, self.parameters.rows(), |row, _| {
             let live = self.of_row(row);
@@ -349,12 +357,12 @@ impl Crane {
             });
             entries.collect::<Vec<f64>>()
         })?;
-        Ok(crate::arrays::array(py, poses.concat(), &self.parameters.shape, &[chain.frames.len(), 4, 4])?.into_any())
+        array(py, poses.concat(), &self.parameters.shape, &[chain.frames.len(), 4, 4]).map(Numbers::from)
     }
 
     /// (..., n): where statics begins, m and rad; NaN for parameters that break a rule.
     #[getter]
-    fn guess<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn guess<'py>(&self, py: Python<'py>) -> Array<'py> {
         let (rows, size) = (self.parameters.rows(), self.live.size());
         let guesses = crate::parallel::map_rows(py, rows, |row, _| {
             if self.bad.iter().any(|bad| bad.row == row) {
@@ -362,7 +370,7 @@ impl Crane {
             }
             (&*self.of_row(row) as &dyn DynCrane).guess()
         })?;
-        Ok(crate::arrays::array(py, guesses.concat(), &self.parameters.shape, &[size])?.into_any())
+        array(py, guesses.concat(), &self.parameters.shape, &[size]).map(Numbers::from)
     }
 }
 

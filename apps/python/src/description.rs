@@ -8,12 +8,13 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::crane::Crane;
+use crate::types::Info;
 
 #[pymethods]
 impl Crane {
     /// Coordinates, bodies, drives, supports, points and parameters: names, units and descriptions.
     #[getter(info)]
-    fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn describe<'py>(&self, py: Python<'py>) -> PyResult<Info<'py>> {
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
         let all = PyDict::new(py);
@@ -108,7 +109,7 @@ impl Crane {
         all.set_item("sections", list(rows)?)?;
         all.set_item("points", description.points.iter().map(|point| &**point).collect::<Vec<&str>>())?;
         all.set_item("run", (description.duration, description.step, description.output))?;
-        Ok(all)
+        Ok(all.into())
     }
 }
 

@@ -15,6 +15,7 @@ use pyo3::types::PyDict;
 use crate::arrays::array;
 use crate::crane::Crane;
 use crate::parallel::{Watch, threads};
+use crate::types::{Dict, Keys, Progress};
 
 /// Maximum number of poses: some hours of computing.
 const MOST_POSES: usize = 10_000_000;
@@ -52,14 +53,14 @@ pub struct ChartRequest {
 
 #[pymethods]
 impl Crane {
-    /// Ratings over the axes: `Crane.envelope` names them.
+    /// Largest loads over the axes: `Crane.envelope` makes an `Envelope` of them.
     #[pyo3(name = "_envelope", signature = (asked, progress=None))]
     fn run_envelope<'py>(
         &self,
         py: Python<'py>,
-        asked: ChartRequest,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+        asked: Keys<ChartRequest>,
+        progress: Option<Progress>,
+    ) -> PyResult<Dict<'py>> {
         if !self.is_single() {
             return Err(PyValueError::new_err("the parameters are arrays: name them in `ranges` instead"));
         }
@@ -93,7 +94,7 @@ impl Crane {
         let coverage = Coverage::new(crane, &envelope.limits);
         all.set_item("considered", coverage.considered)?;
         all.set_item("not_considered", coverage.not_considered)?;
-        Ok(all)
+        Ok(all.into())
     }
 }
 

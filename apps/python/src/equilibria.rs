@@ -13,6 +13,7 @@ use crate::crane::Crane;
 use crate::envelope::{check_axis, drives};
 use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
 use crate::parallel::map_rows;
+use crate::types::{ArrayLike, Dict, Given};
 
 /// Status of a row whose arguments or parameters are not allowed.
 const INVALID: &str = "invalid";
@@ -67,7 +68,7 @@ impl FoundEquilibria {
 
 impl Crane {
     /// Drives that are held, with their positions, by the name of a coordinate or of a link with one drive.
-    fn held(&self, given: &[(String, Bound<'_, PyAny>)]) -> PyResult<Vec<(usize, Argument)>> {
+    fn held(&self, given: &[(String, ArrayLike<'_>)]) -> PyResult<Vec<(usize, Argument)>> {
         let description = self.live.description();
         let mut held: Vec<(usize, Argument)> = Vec::new();
         for (name, positions) in given {
@@ -93,20 +94,20 @@ impl Crane {
 
 #[pymethods]
 impl Crane {
-    /// Equilibria over parameters, times, guesses and positions of drives.
+    /// Equilibria over parameters, times, guesses and positions of drives: `Crane.statics` makes an `Equilibrium` of them.
     #[pyo3(name = "_equilibria", signature = (t=None, hold=None, guess=None, tolerance=None, iterations=None, load_steps=None, invalid="raise"))]
     #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn equilibria<'py>(
         &self,
         py: Python<'py>,
-        t: Option<&Bound<'py, PyAny>>,
-        hold: Option<Vec<(String, Bound<'py, PyAny>)>>,
-        guess: Option<&Bound<'py, PyAny>>,
+        t: Given<'py>,
+        hold: Option<Vec<(String, ArrayLike<'py>)>>,
+        guess: Given<'py>,
         tolerance: Option<f64>,
         iterations: Option<usize>,
         load_steps: Option<usize>,
         invalid: &str,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Dict<'py>> {
         let invalid = Invalid::named(invalid)?;
         let defaults = Settings::default();
         let settings = Settings {
@@ -125,8 +126,8 @@ impl Crane {
         }
         let description = self.live.description();
         let none = Argument::none;
-        let times = t.map_or_else(|| Ok(none()), |t| Argument::scalars("t", t))?;
-        let guesses = guess.map_or_else(|| Ok(none()), |guess| Argument::coordinates("guess", guess, description))?;
+        let times = t.as_ref().map_or_else(|| Ok(none()), |t| Argument::scalars("t", t))?;
+        let guesses = guess.map_or_else(|| Ok(none()), |guess| Argument::coordinates("guess", &guess, description))?;
         let nothing = none();
         let held = self.held(hold.as_deref().unwrap_or_default())?;
         if !held.is_empty() && t.is_some() {
@@ -205,6 +206,6 @@ impl Crane {
         all.set_item("message", found.iter().enumerate().map(message).collect::<Vec<_>>())?;
         all.set_item("steps", equilibria().map(|found| found.map_or(0, Equilibrium::steps)).collect::<Vec<_>>())?;
         all.set_item("shape", joined.shape.clone())?;
-        Ok(all)
+        Ok(all.into())
     }
 }

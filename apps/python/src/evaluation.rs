@@ -4,7 +4,7 @@ use crane_live::rows::{BatchEvaluation, ParameterRows};
 use crane_live::{FunctionId, Refusal};
 use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::rt::lanes::f64x8;
-use numpy::{PyArrayDyn, PyArrayMethods};
+use numpy::PyArrayMethods;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -12,11 +12,7 @@ use crate::arrays::{Argument, Joined, array, zeros};
 use crate::crane::Crane;
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::{for_rows, map_rows};
-
-/// A result, over the leading axes and its own.
-pub type Array<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
-/// An argument that may be left out.
-pub type Given<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+use crate::types::{Array, ArrayLike, Given, Numbers};
 
 /// Rows that a thread takes at a time: some tens of microseconds of work.
 const PIECE: usize = 64;
@@ -24,26 +20,26 @@ const PIECE: usize = 64;
 pub const STATE: [&str; 4] = ["t", "q", "v", "a"];
 
 /// A state as it was given.
-#[derive(Clone, Copy, Default)]
-pub struct StateArguments<'a, 'py> {
+#[derive(Default)]
+pub struct StateArguments<'py> {
     /// Time.
-    pub t: Given<'a, 'py>,
+    pub t: Given<'py>,
     /// Coordinates.
-    pub q: Given<'a, 'py>,
+    pub q: Given<'py>,
     /// Rates.
-    pub v: Given<'a, 'py>,
+    pub v: Given<'py>,
     /// Accelerations.
-    pub a: Given<'a, 'py>,
+    pub a: Given<'py>,
 }
 
-impl<'a, 'py> StateArguments<'a, 'py> {
+impl<'py> StateArguments<'py> {
     /// At rest.
-    pub fn pose(q: &'a Bound<'py, PyAny>) -> Self {
+    pub fn pose(q: ArrayLike<'py>) -> Self {
         Self { q: Some(q), ..Self::default() }
     }
 
     /// In motion.
-    pub fn moving(q: &'a Bound<'py, PyAny>, v: &'a Bound<'py, PyAny>) -> Self {
+    pub fn moving(q: ArrayLike<'py>, v: ArrayLike<'py>) -> Self {
         Self { v: Some(v), ..Self::pose(q) }
     }
 }
@@ -66,7 +62,7 @@ impl Crane {
         &self,
         py: Python<'py>,
         function: FunctionId,
-        state: StateArguments<'_, 'py>,
+        state: StateArguments<'py>,
         invalid: &str,
     ) -> Array<'py> {
         let of_row = &*self.live.shape(function);
@@ -83,7 +79,7 @@ impl Crane {
             self.with_workspace(function, |evaluation| {
                 evaluation.run(&rows, 0..1, out.readwrite().as_slice_mut().unwrap_or_default());
             });
-            return Ok(out);
+            return Ok(out.into());
         }
         // Room that NumPy asks the system for comes in larger pages.
         let array = zeros(py, &joined.shape, of_row);
@@ -93,14 +89,14 @@ impl Crane {
         for_rows(py, (PIECE, width), out, make, |evaluation, range, out| evaluation.run(&rows, range, out))?;
         forget(out, &bad, width);
         warn_of_rows(py, &bad, &joined.shape)?;
-        Ok(array)
+        Ok(array.into())
     }
 
     /// The same by a function of one crane.
     pub fn one_by_one<'py>(
         &self,
         py: Python<'py>,
-        state: StateArguments<'_, 'py>,
+        state: StateArguments<'py>,
         of_row: &[usize],
         invalid: &str,
         write: impl Fn(&crane_live::LiveCrane, &Moment, &mut [f64]) + Sync,
@@ -122,7 +118,7 @@ impl Crane {
         let mut out = rows.concat();
         forget(&mut out, &bad, width);
         warn_of_rows(py, &bad, &joined.shape)?;
-        array(py, out, &joined.shape, of_row)
+        array(py, out, &joined.shape, of_row).map(Numbers::from)
     }
 
     /// Refuses functions that do not follow from pose, rates and time, or that closed loops change.
@@ -171,13 +167,13 @@ impl Crane {
     }
 
     /// t, q, v, a; empty if not given, which means t = 0 for the time.
-    pub fn read(&self, state: StateArguments<'_, '_>) -> PyResult<[Argument; 4]> {
+    pub fn read(&self, state: StateArguments<'_>) -> PyResult<[Argument; 4]> {
         let description = self.live.description();
-        let coordinates = |name: &str, given: Given<'_, '_>| {
-            given.map_or_else(|| Ok(Argument::none()), |given| Argument::coordinates(name, given, description))
+        let coordinates = |name: &str, given: Given<'_>| {
+            given.map_or_else(|| Ok(Argument::none()), |given| Argument::coordinates(name, &given, description))
         };
         Ok([
-            state.t.map_or_else(|| Ok(Argument::none()), |t| Argument::scalars("t", t))?,
+            state.t.map_or_else(|| Ok(Argument::none()), |t| Argument::scalars("t", &t))?,
             coordinates("q", state.q)?,
             coordinates("v", state.v)?,
             coordinates("a", state.a)?,

@@ -10,9 +10,10 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{Array, Given, STATE, StateArguments};
+use crate::evaluation::{STATE, StateArguments};
 use crate::mistakes::{Invalid, warn_of_rows};
 use crate::parallel::map_rows;
+use crate::types::{Array, ArrayLike, Given, Numbers};
 
 #[pymethods]
 impl Crane {
@@ -21,10 +22,10 @@ impl Crane {
     fn state_derivatives_rows<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        x: Given<'_, 'py>,
-        t: Given<'_, 'py>,
+        q: ArrayLike<'py>,
+        v: ArrayLike<'py>,
+        x: Given<'py>,
+        t: Given<'py>,
         invalid: &str,
     ) -> Array<'py> {
         let width = self.live.size() + force_states::columns(self.live.description()).len();
@@ -39,19 +40,19 @@ impl Crane {
     fn columns_at_rows<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        x: Given<'_, 'py>,
-        t: Given<'_, 'py>,
+        q: ArrayLike<'py>,
+        v: ArrayLike<'py>,
+        x: Given<'py>,
+        t: Given<'py>,
         invalid: &str,
-    ) -> PyResult<(Bound<'py, PyAny>, Vec<String>)> {
+    ) -> PyResult<(Numbers<'py>, Vec<String>)> {
         let names: Vec<String> = quantities(self.live.description(), self.live.loop_joints())
             .into_iter()
             .map(|column| column.name)
             .collect();
         let state = StateArguments { t, ..StateArguments::moving(q, v) };
         let all = self.of_states(py, state, (x, invalid), names.len(), |crane, state| quantities_at(crane, state))?;
-        Ok((all.into_any(), names))
+        Ok((all, names))
     }
 }
 
@@ -60,8 +61,8 @@ impl Crane {
     fn of_states<'py>(
         &self,
         py: Python<'py>,
-        state: StateArguments<'_, 'py>,
-        (x, invalid): (Given<'_, 'py>, &str),
+        state: StateArguments<'py>,
+        (x, invalid): (Given<'py>, &str),
         width: usize,
         compute: impl Fn(&LiveCrane, &StateAt<'_>) -> Vec<f64> + Sync,
     ) -> Array<'py> {
@@ -75,7 +76,7 @@ impl Crane {
                     self.live.description().name
                 )));
             }
-            Some(x) => Argument::of_width("x", x, states.len(), &states.join(", "))?,
+            Some(x) => Argument::of_width("x", &x, states.len(), &states.join(", "))?,
         };
         let [t, q, v, a] = &arguments;
         let joined =
@@ -99,6 +100,6 @@ impl Crane {
             compute(&crane, &StateAt { t, q, v, x })
         })?;
         warn_of_rows(py, &bad, &joined.shape)?;
-        array(py, rows.concat(), &joined.shape, &[width])
+        array(py, rows.concat(), &joined.shape, &[width]).map(Numbers::from)
     }
 }

@@ -6,7 +6,8 @@ use crane_quantities::{axes, quantities};
 use pyo3::prelude::*;
 
 use crate::crane::Crane;
-use crate::evaluation::{Array, Given, Moment, StateArguments};
+use crate::evaluation::{Moment, StateArguments};
+use crate::types::{Array, ArrayLike, Given};
 
 /// The methods of the table of quantities, with its documentation.
 macro_rules! methods {
@@ -34,8 +35,8 @@ macro_rules! method {
             fn $name<'py>(
                 &self,
                 py: Python<'py>,
-                $($required: &Bound<'py, PyAny>,)*
-                $($optional: Given<'_, 'py>,)?
+                $($required: ArrayLike<'py>,)*
+                $($optional: Given<'py>,)?
                 invalid: &str,
             ) -> Array<'py> {
                 #[allow(clippy::needless_update, reason = "a row with all arguments leaves none to the default")]
@@ -62,7 +63,7 @@ pub fn functions() -> Vec<(&'static str, Vec<&'static str>, Vec<String>)> {
 impl Crane {
     /// (..., bodies, n, n, 4, 4): `∂²T/∂q_m∂q_n`.
     #[pyo3(signature = (q, *, invalid="raise"))]
-    fn transform_second_derivatives<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
+    fn transform_second_derivatives<'py>(&self, py: Python<'py>, q: ArrayLike<'py>, invalid: &str) -> Array<'py> {
         let (bodies, n) = (self.live.description().bodies.len(), self.live.size());
         let state = StateArguments::pose(q);
         self.one_by_one(py, state, &[bodies, n, n, 4, 4], invalid, |crane, Moment { q, .. }, out| {
@@ -91,9 +92,9 @@ impl Crane {
     fn forward_dynamics_derivatives<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        t: Given<'_, 'py>,
+        q: ArrayLike<'py>,
+        v: ArrayLike<'py>,
+        t: Given<'py>,
         invalid: &str,
     ) -> Array<'py> {
         self.compute(
@@ -106,20 +107,14 @@ impl Crane {
 
     /// (..., 3, n, n): A, K and D of small motions about poses at rest; `linearise` names them.
     #[pyo3(name = "_small_motions", signature = (q, *, invalid="raise"))]
-    fn small_motions<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> Array<'py> {
+    fn small_motions<'py>(&self, py: Python<'py>, q: ArrayLike<'py>, invalid: &str) -> Array<'py> {
         self.compute(py, FunctionId::Linearise, StateArguments::pose(q), invalid)
     }
 }
 
 impl Crane {
     /// A function of all rows. Accelerations are those with closed loops, as far as they follow from the state.
-    fn function<'py>(
-        &self,
-        py: Python<'py>,
-        id: FunctionId,
-        state: StateArguments<'_, 'py>,
-        invalid: &str,
-    ) -> Array<'py> {
+    fn function<'py>(&self, py: Python<'py>, id: FunctionId, state: StateArguments<'py>, invalid: &str) -> Array<'py> {
         let has_loops = !self.live.loop_joints().is_empty() && !self.live.description().has_hidden_forces();
         if id == FunctionId::ForwardDynamics && has_loops {
             return self.one_by_one(py, state, &[self.live.size()], invalid, |crane, at, out| {

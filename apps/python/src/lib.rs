@@ -17,32 +17,34 @@
 //! | `page` | the crane in 3-D, as HTML |
 //! | `arrays` | arguments as rows, and results as arrays |
 //! | `parallel` | rows on threads, while Python's signals are checked |
-//! | `mistakes` | exceptions and warnings |
+//! | `mistakes` | exceptions and warnings of the module of that name |
+//! | `types` | what Python calls the types of arguments and results |
 
-mod arrays;
-mod buckling;
-mod crane;
-mod description;
-mod envelope;
-mod equilibria;
-mod evaluation;
-mod force_states;
-mod functions;
-mod linear;
-mod mistakes;
-mod motion;
-mod page;
-mod parallel;
-mod products;
-mod recorded;
-mod sensitivity;
-mod stepping;
-mod strength;
-mod vibrations;
+pub(crate) mod arrays;
+pub(crate) mod buckling;
+pub(crate) mod crane;
+pub(crate) mod description;
+pub(crate) mod envelope;
+pub(crate) mod equilibria;
+pub(crate) mod evaluation;
+pub(crate) mod force_states;
+pub(crate) mod functions;
+pub(crate) mod linear;
+pub(crate) mod mistakes;
+pub(crate) mod motion;
+pub(crate) mod page;
+pub(crate) mod parallel;
+pub(crate) mod products;
+pub(crate) mod recorded;
+pub(crate) mod sensitivity;
+pub(crate) mod stepping;
+pub(crate) mod strength;
+pub(crate) mod types;
+pub(crate) mod vibrations;
 
 use pyo3::prelude::*;
 
-/// What `crane` imports.
+/// The native part of `crane`.
 #[pymodule]
 mod _native {
     #[pymodule_export]
@@ -57,8 +59,6 @@ mod _native {
     use crate::functions::functions;
     #[pymodule_export]
     use crate::linear::loop_margins;
-    #[pymodule_export]
-    use crate::mistakes::{InvalidRowWarning, NoEquilibrium, ParameterError, SpecError, SpecWarning};
     #[pymodule_export]
     use crate::parallel::{set_threads, threads};
     #[pymodule_export]

@@ -6,16 +6,17 @@ use crane_model::linear::{About, Forces, Input, LinearModel, Output, linear_mode
 use crane_model::margins::{self, Loop, Margins, Plant, Term};
 use crane_model::nalgebra::{DMatrix, DVector};
 use crane_model::results::Column;
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyArithmeticError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{Given, STATE, StateArguments};
+use crate::evaluation::{STATE, StateArguments};
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_numbers, warn_of_rows};
 use crate::parallel::map_rows;
+use crate::types::{Array, ArrayLike, Dict, Given, Numbers};
 
 /// How the states of forces are found that are not given.
 fn forces_named(name: &str) -> PyResult<Forces<'static>> {
@@ -48,22 +49,22 @@ fn verdicts(found: &[Result<LinearModel, String>], n: usize) -> [Vec<f64>; 3] {
 
 #[pymethods]
 impl Crane {
-    /// Linear models about states: `Crane.state_space` names them.
+    /// Linear models about states: `Crane.state_space` makes a `StateSpace` of them.
     #[pyo3(name = "_state_space", signature = (q, v=None, t=None, x=None, *, valves="shut", steady=false, inputs=None, outputs=None, invalid="raise"))]
     #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn state_space_rows<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: Given<'_, 'py>,
-        t: Given<'_, 'py>,
-        x: Given<'_, 'py>,
+        q: ArrayLike<'py>,
+        v: Given<'py>,
+        t: Given<'py>,
+        x: Given<'py>,
         valves: &str,
         steady: bool,
         inputs: Option<Vec<String>>,
         outputs: Option<Vec<String>>,
         invalid: &str,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Dict<'py>> {
         let (invalid, forces) = (Invalid::named(invalid)?, forces_named(valves)?);
         let [t, q, v, _] = self.read(StateArguments { t, q: Some(q), v, a: None })?;
         let names = force_states::columns(self.live.description());
@@ -72,7 +73,7 @@ impl Crane {
             |x| {
                 Argument::of_width(
                     "x",
-                    x,
+                    &x,
                     names.len(),
                     if names.is_empty() { "it has no states of forces" } else { "those of the states of forces" },
                 )
@@ -152,7 +153,7 @@ impl Crane {
             all.set_item(name, names)?;
             all.set_item(format!("{}_units", &name[..name.len() - 1]), units)?;
         }
-        Ok(all)
+        Ok(all.into())
     }
 
     /// The inputs that a loop on something moves, and the powers of s by which each follows; then the coordinate of its drive.
@@ -209,7 +210,7 @@ impl Crane {
     }
 }
 
-/// Margins of a loop around plants, row by row: `state_space.Margins` names the 11 numbers of a row, NaN where there are none.
+/// (rows, 11): margins of a loop around plants, row by row: `Crane.margins` names them; NaN where there are none.
 ///
 /// a: (rows, n, n), b: (rows, n, k), c: (rows, n), d: (rows, k): state matrices, what follows the input with these powers of s, the output.
 /// numbers: p, i, d, filter, both times of a lead, delay, lag.
@@ -217,14 +218,14 @@ impl Crane {
 #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
 pub fn loop_margins<'py>(
     py: Python<'py>,
-    a: &Bound<'py, PyArrayDyn<f64>>,
-    b: &Bound<'py, PyArrayDyn<f64>>,
-    c: &Bound<'py, PyArrayDyn<f64>>,
-    d: &Bound<'py, PyArrayDyn<f64>>,
+    a: Numbers<'py>,
+    b: Numbers<'py>,
+    c: Numbers<'py>,
+    d: Numbers<'py>,
     powers: Vec<i32>,
     numbers: [f64; 8],
     invalid: &str,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+) -> Array<'py> {
     const WIDTH: usize = 11;
     let invalid = Invalid::named(invalid)?;
     let (rows, n, k) = (a.shape()[0], a.shape()[1], powers.len());
@@ -283,5 +284,5 @@ pub fn loop_margins<'py>(
             ]
         }
     };
-    array(py, found.iter().flat_map(row).collect(), &[rows], &[WIDTH])
+    array(py, found.iter().flat_map(row).collect(), &[rows], &[WIDTH]).map(Numbers::from)
 }

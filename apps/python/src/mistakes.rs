@@ -1,25 +1,15 @@
 //! Exceptions and warnings.
 
 use crane_codegen::Diagnostics;
-use pyo3::create_exception;
-use pyo3::exceptions::{PyArithmeticError, PyUserWarning, PyValueError};
+use pyo3::exceptions::PyValueError;
+use pyo3::import_exception;
 use pyo3::prelude::*;
 
-create_exception!(crane, SpecError, PyValueError, "The mistakes of a spec, shown with their locations and remedies.");
-create_exception!(
-    crane,
-    ParameterError,
-    PyValueError,
-    "Live parameters whose values break a rule of the spec language."
-);
-create_exception!(crane, NoEquilibrium, PyArithmeticError, "Statics found no stable equilibrium.");
-create_exception!(
-    crane,
-    SpecWarning,
-    PyUserWarning,
-    "Implausible numbers of a spec, shown with their locations and remedies."
-);
-create_exception!(crane, InvalidRowWarning, PyUserWarning, "Rows of a batch whose results are NaN, with the reasons.");
+import_exception!(crane.mistakes, SpecError);
+import_exception!(crane.mistakes, ParameterError);
+import_exception!(crane.mistakes, NoEquilibrium);
+import_exception!(crane.mistakes, SpecWarning);
+import_exception!(crane.mistakes, InvalidRowWarning);
 
 /// The mistakes of a spec as an exception that prints them as the command draws them; its `codes` are those of the rules.
 pub fn spec_error(py: Python<'_>, mistakes: &Diagnostics) -> PyErr {

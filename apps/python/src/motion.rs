@@ -22,6 +22,7 @@ use crate::arrays::{Argument, Joined, array};
 use crate::crane::{Crane, input_index};
 use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
 use crate::parallel::{Watch, threads};
+use crate::types::{Dict, Given, Keys, Progress, hints};
 
 /// Options of a run, as given.
 #[derive(Clone, FromPyObject)]
@@ -142,14 +143,14 @@ fn columns_with_units(columns: &[Column]) -> Vec<(&str, &str)> {
     columns.iter().map(|column| (column.name.as_str(), column.unit.as_str())).collect()
 }
 
-pub fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Bound<'py, PyDict>> {
+pub fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Dict<'py, hints::Int>> {
     let all = PyDict::new(py);
     let Statistics { steps, rejections, evaluations, factorisations } = *statistics;
     all.set_item("steps", steps)?;
     all.set_item("rejections", rejections)?;
     all.set_item("evaluations", evaluations)?;
     all.set_item("factorisations", factorisations)?;
-    Ok(all)
+    Ok(all.into())
 }
 
 /// Continues unless the call has been cancelled.
@@ -187,20 +188,20 @@ fn asked_of(crane: &LiveCrane, names: &[String]) -> PyResult<Vec<(usize, Measure
 
 #[pymethods]
 impl Crane {
-    /// A run with all its results.
+    /// A run with all its results: `Crane.simulate` makes a `Run` of it.
     #[pyo3(name = "_record", signature = (timing, q=None, v=None, verify=true, bend=cautions::BEND, gradients=None, adjoint=None))]
     #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn record<'py>(
         &self,
         py: Python<'py>,
-        timing: Timing,
-        q: Option<&Bound<'py, PyAny>>,
-        v: Option<&Bound<'py, PyAny>>,
+        timing: Keys<Timing>,
+        q: Given<'py>,
+        v: Given<'py>,
         verify: bool,
         bend: f64,
         gradients: Option<Vec<String>>,
         adjoint: Option<Vec<String>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Dict<'py>> {
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
         if !self.is_single() {
@@ -211,7 +212,7 @@ impl Crane {
             return Err(PyValueError::new_err(format!("bend_limit={bend}: write an angle above 0, in degrees")));
         }
         let [q, v] = [("q", q), ("v", v)]
-            .map(|(name, state)| state.map(|state| read_coordinates(name, state, description)).transpose());
+            .map(|(name, state)| state.map(|state| read_coordinates(name, &state, description)).transpose());
         let (q, v) = (q?, v?);
         let named =
             |name: &String| Along::named(&self.live, name).map_err(|not| PyValueError::new_err(not.to_string()));
@@ -278,22 +279,23 @@ impl Crane {
             }
             all.set_item("adjoint", of_measures)?;
         }
-        Ok(all)
+        Ok(all.into())
     }
 
-    /// Runs with every row of parameters, starts and inputs, with the extremes and final state of each.
+    /// Runs with every row of parameters, starts and inputs, with the extremes and final state of each: `Crane.simulate_ensemble` makes an
+    /// `Ensemble` of them.
     #[pyo3(name = "_run_ensemble", signature = (timing, invalid="raise", progress=None, q=None, v=None, inputs=None))]
     #[expect(clippy::too_many_arguments, reason = "named arguments in Python")]
     fn run_ensemble<'py>(
         &self,
         py: Python<'py>,
-        timing: Timing,
+        timing: Keys<Timing>,
         invalid: &str,
-        progress: Option<Py<PyAny>>,
-        q: Option<&Bound<'py, PyAny>>,
-        v: Option<&Bound<'py, PyAny>>,
-        inputs: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+        progress: Option<Progress>,
+        q: Given<'py>,
+        v: Given<'py>,
+        inputs: Option<Dict<'py, Option<hints::ArrayLike>>>,
+    ) -> PyResult<Dict<'py>> {
         let invalid = Invalid::named(invalid)?;
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
@@ -361,7 +363,7 @@ impl Crane {
             outcomes.iter().map(|outcome| outcome.run.as_ref().map_or(f64::NAN, |run| run.statistics.steps as f64));
         all.set_item("steps", array(py, steps.collect(), shape, &[])?)?;
         all.set_item("shape", shape.clone())?;
-        Ok(all)
+        Ok(all.into())
     }
 }
 
@@ -369,20 +371,20 @@ impl Crane {
     /// Cases over the common axes of parameters, starts and inputs.
     pub fn cases(
         &self,
-        q: Option<&Bound<'_, PyAny>>,
-        v: Option<&Bound<'_, PyAny>>,
-        inputs: Option<&Bound<'_, PyDict>>,
+        q: Given<'_>,
+        v: Given<'_>,
+        inputs: Option<Dict<'_, Option<hints::ArrayLike>>>,
     ) -> PyResult<(Vec<usize>, Vec<Case>)> {
         let description = self.live.description();
-        let start = |name: &str, given: Option<&Bound<'_, PyAny>>| -> PyResult<Argument> {
+        let start = |name: &str, given: Given<'_>| -> PyResult<Argument> {
             let Some(given) = given else { return Ok(Argument::none()) };
-            let argument = Argument::coordinates(name, given, description)?;
+            let argument = Argument::coordinates(name, &given, description)?;
             check_finite(name, &argument, description)?;
             Ok(argument)
         };
         let (q, v) = (start("q", q)?, start("v", v)?);
         let mut changed: Vec<(usize, String, Option<Argument>)> = Vec::new();
-        for (name, value) in inputs.into_iter().flatten() {
+        for (name, value) in inputs.iter().flat_map(|inputs| inputs.iter()) {
             let name: String = name.extract()?;
             let index = input_index(description, &name)?;
             let (label, unit) = (format!("inputs['{name}']"), &description.inputs[index].unit);

@@ -12,13 +12,14 @@ use crane_page::shapes::{
 };
 use crane_page::tables::{Case, of_page};
 use crane_page::{Program, Subject, Texts, page};
-use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyArithmeticError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arrays::Argument;
 use crate::crane::Crane;
 use crate::recorded::table_of;
+use crate::types::{ArrayLike, Keys, Numbers};
 
 /// This package, in records of runs.
 const PROGRAM: Program = Program { name: "crane for Python", version: env!("CARGO_PKG_VERSION") };
@@ -89,17 +90,17 @@ impl Crane {
     fn render<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        shown: &Bound<'py, PyAny>,
+        q: ArrayLike<'py>,
+        shown: ArrayLike<'py>,
         width: i64,
         height: i64,
         azimuth: Option<f64>,
         elevation: Option<f64>,
-    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+    ) -> PyResult<Numbers<'py, u8>> {
         let view = View::new([width, height], azimuth, elevation).map_err(PyValueError::new_err)?;
         let crane: &dyn DynCrane = &self.live;
         let read = |name: &str, given| Argument::coordinates(name, given, crane.description());
-        let (pose, shown) = (read("q", q)?, read("shown", shown)?);
+        let (pose, shown) = (read("q", &q)?, read("shown", &shown)?);
         if !pose.shape.is_empty() {
             let shape = &pose.shape;
             return Err(PyValueError::new_err(format!("q: poses of shape {shape:?}: a picture shows one, as in q[0]")));
@@ -114,12 +115,12 @@ impl Crane {
             draw(&figure(&pose.numbers), &view, &room)
         });
         let [width, height] = view.sides();
-        PyArray1::from_vec(py, elements).reshape([height, width, 3])
+        Ok(PyArray1::from_vec(py, elements).reshape(vec![height, width, 3])?.into())
     }
 
     /// The crane in 3-D and in tables as an HTML page that needs no network: at rest, or with a run of it.
     #[pyo3(name = "_page", signature = (run=None))]
-    fn page_with(&self, py: Python<'_>, run: Option<Given<'_>>) -> PyResult<String> {
+    fn page_with(&self, py: Python<'_>, run: Option<Keys<Given<'_>>>) -> PyResult<String> {
         let run = run.map(|run| run.recorded(&self.live)).transpose()?;
         let (crane, live, spec) = (&self.live as &dyn DynCrane, &self.live, &self.source.text);
         let made = py.detach(|| {

@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::types::Progress;
+
 /// How many threads a call uses; 0: as many as the machine has.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
@@ -46,7 +48,7 @@ pub struct Watch {
     done: AtomicUsize,
     all: usize,
     /// Called with both numbers.
-    report: Option<Py<PyAny>>,
+    report: Option<Progress>,
 }
 
 /// Time between checks for signals.
@@ -59,7 +61,7 @@ impl Watch {
     }
 
     /// Watches a new call over rows, with a Python function that receives the numbers of finished and of all rows.
-    pub fn reporting(report: Option<Py<PyAny>>, all: usize) -> Self {
+    pub fn reporting(report: Option<Progress>, all: usize) -> Self {
         let looked = Mutex::new((Instant::now(), None));
         Self { off: AtomicBool::new(false), looked, done: AtomicUsize::new(0), all, report }
     }

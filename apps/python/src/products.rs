@@ -14,9 +14,10 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{Array, Given, STATE, StateArguments, forget};
+use crate::evaluation::{STATE, StateArguments, forget};
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::for_rows;
+use crate::types::{Array, ArrayLike, Given, Numbers};
 
 /// Rows that a thread takes at a time.
 const PIECE: usize = 32;
@@ -92,18 +93,18 @@ impl Crane {
         &self,
         py: Python<'py>,
         function: &str,
-        weights: &Bound<'py, PyAny>,
-        q: Given<'_, 'py>,
-        v: Given<'_, 'py>,
-        a: Given<'_, 'py>,
-        t: Given<'_, 'py>,
+        weights: ArrayLike<'py>,
+        q: Given<'py>,
+        v: Given<'py>,
+        a: Given<'py>,
+        t: Given<'py>,
         invalid: &str,
     ) -> Array<'py> {
         let id = self.with_products(function)?;
         let results: usize = self.live.shape(id).iter().product();
         let state = StateArguments { t, q, v, a };
         check_arguments(id, &state)?;
-        let weights = Argument::of_width("weights", weights, results, "one for each result")?;
+        let weights = Argument::of_width("weights", &weights, results, "one for each result")?;
         let numbers = self.product_numbers();
         let too_large = |TooLarge { registers }| {
             let name = &self.live.description().name;
@@ -124,18 +125,18 @@ impl Crane {
         &self,
         py: Python<'py>,
         function: &str,
-        changes: &Bound<'py, PyAny>,
-        q: Given<'_, 'py>,
-        v: Given<'_, 'py>,
-        a: Given<'_, 'py>,
-        t: Given<'_, 'py>,
+        changes: ArrayLike<'py>,
+        q: Given<'py>,
+        v: Given<'py>,
+        a: Given<'py>,
+        t: Given<'py>,
         invalid: &str,
     ) -> Array<'py> {
         let id = self.with_products(function)?;
         let of_row = self.live.shape(id).clone();
         let state = StateArguments { t, q, v, a };
         check_arguments(id, &state)?;
-        let changes = Argument::of_width("changes", changes, self.product_numbers(), "one for each number")?;
+        let changes = Argument::of_width("changes", &changes, self.product_numbers(), "one for each number")?;
         let width = of_row.iter().product();
         let (vectors, of_row) = ((&changes, "changes"), (width, of_row.as_slice()));
         if PushForward::<f64>::new(&self.live, id).is_err() {
@@ -187,7 +188,7 @@ impl Crane {
     fn products<'py, R: Multiply<f64>, S: Multiply<f64x8>>(
         &self,
         py: Python<'py>,
-        state: StateArguments<'_, 'py>,
+        state: StateArguments<'py>,
         (vectors, name): (&Argument, &str),
         (width, of_row): (usize, &[usize]),
         invalid: &str,
@@ -236,7 +237,7 @@ impl Crane {
         for_rows(py, (PIECE, width), &mut out, make, work)?;
         forget(&mut out, &bad, width);
         warn_of_rows(py, &bad, &joined.shape)?;
-        array(py, out, &joined.shape, of_row)
+        array(py, out, &joined.shape, of_row).map(Numbers::from)
     }
 }
 
@@ -268,9 +269,9 @@ fn at_rows<'r, T: Batch, M: Multiply<T>>(
 }
 
 /// Refuses arguments that a function does not have, and a lack of those that it needs.
-fn check_arguments(function: FunctionId, state: &StateArguments<'_, '_>) -> PyResult<()> {
+fn check_arguments(function: FunctionId, state: &StateArguments<'_>) -> PyResult<()> {
     let Some(own) = function.python() else { return Ok(()) };
-    let given = [("q", state.q), ("v", state.v), ("a", state.a), ("t", state.t)];
+    let given = [("q", &state.q), ("v", &state.v), ("a", &state.a), ("t", &state.t)];
     let takes: Vec<&str> = own.names().collect();
     let name = function.name();
     let listed = takes.join(", ");

@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::Argument;
 use crate::crane::Crane;
+use crate::types::Rows;
 
 /// Rows of numbers as the table of a run.
 pub fn table_of(crane: &dyn DynCrane, rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Table> {
@@ -34,9 +35,9 @@ type OfCylinder = (String, [f64; 7]);
 /// Drives, cylinders, and the pump.
 type OfAll = (Vec<OfDrive>, Vec<OfCylinder>, Option<[f64; 4]>);
 
-/// What drives, cylinders and the pump of a run must be able to do.
+/// What drives, cylinders and the pump of a run must be able to do: `Run.duties` names it.
 #[pyfunction]
-pub fn duties_of(crane: PyRef<'_, Crane>, table: PyReadonlyArray2<'_, f64>) -> PyResult<OfAll> {
+pub fn duties_of(crane: PyRef<'_, Crane>, table: Rows<'_>) -> PyResult<OfAll> {
     let crane: &dyn DynCrane = &crane.live;
     let Duties { drives, cylinders, pump } = Duties::new(crane.description(), &table_of(crane, &table)?);
     let drives = drives.into_iter().map(|duty| {
@@ -55,10 +56,10 @@ pub fn duties_of(crane: PyRef<'_, Crane>, table: PyReadonlyArray2<'_, f64>) -> P
 /// cycles: range, mean, count, times of both ends.
 type OfPlace = (String, f64, String, f64, f64, Vec<(f64, Vec<f64>, Vec<[f64; 5]>)>);
 
-/// What runs that repeat do to every place of beams; `categories`: of beams by their names, `None` that of all others.
+/// What runs that repeat do to every place of beams: `crane.fatigue` names it. `categories`: of beams by their names, `None` that of all others.
 #[pyfunction]
 pub fn fatigue_of(
-    manoeuvres: Vec<(PyRef<'_, Crane>, PyReadonlyArray2<'_, f64>, f64)>,
+    manoeuvres: Vec<(PyRef<'_, Crane>, Rows<'_>, f64)>,
     categories: Vec<(Option<String>, Bound<'_, PyAny>)>,
     slope: f64,
     safety_factor: f64,

@@ -15,10 +15,11 @@ use crate::arrays::array;
 use crate::crane::{Crane, parameter_index};
 use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, spec_error, warn_of_rows};
 use crate::parallel::map_rows;
+use crate::types::Dict;
 
 #[pymethods]
 impl Crane {
-    /// Derivatives over parameters, by numbers of these names or places: `Crane.sensitivity` names them.
+    /// Derivatives over parameters, by numbers of these names or places: `Crane.sensitivity` makes a `Sensitivity` of them.
     #[pyo3(name = "_sensitivity", signature = (numbers, frequencies=3, invalid="raise"))]
     fn sensitivity_rows<'py>(
         &self,
@@ -26,7 +27,7 @@ impl Crane {
         numbers: Vec<String>,
         frequencies: usize,
         invalid: &str,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Dict<'py>> {
         let invalid = Invalid::named(invalid)?;
         let (with_numbers, checked, names) = self.with_live_numbers(py, &numbers)?;
         let description = with_numbers.description();
@@ -99,7 +100,7 @@ impl Crane {
         let units: Vec<&str> = in_order(&names, units, fixed.iter().map(|number| number.unit.as_str()));
         all.set_item("number_units", units)?;
         all.set_item("shape", shape.clone())?;
-        Ok(all)
+        Ok(all.into())
     }
 }
 

@@ -13,13 +13,14 @@ use crane_model::{StateAt, Text};
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, array};
 use crate::crane::Crane;
 use crate::mistakes::{BadRow, describe};
 use crate::motion::{Timing, raised, statistics, unless};
 use crate::parallel::map_rows;
+use crate::types::{Array, ArrayLike, Dict, Given, Keys, Numbers, hints};
 
 /// A motion of one crane, and why it ended if it did.
 struct SteppedCase {
@@ -56,6 +57,8 @@ pub struct Motions {
 
 /// New values of inputs: index, and values or `None` for that of the spec, over (steps, rows).
 type Changes = Vec<(usize, Option<Vec<f64>>)>;
+/// Times, poses, rates, states of forces, and work.
+type States<'py> = (Numbers<'py>, Numbers<'py>, Numbers<'py>, Numbers<'py>, Numbers<'py>);
 
 #[pymethods]
 impl Crane {
@@ -66,13 +69,13 @@ impl Crane {
     fn motions(
         &self,
         py: Python<'_>,
-        timing: Timing,
+        timing: Keys<Timing>,
         audit: bool,
         t: f64,
-        q: Option<&Bound<'_, PyAny>>,
-        v: Option<&Bound<'_, PyAny>>,
+        q: Given<'_>,
+        v: Given<'_>,
         x: Vec<f64>,
-        inputs: Option<&Bound<'_, PyDict>>,
+        inputs: Option<Dict<'_, Option<hints::ArrayLike>>>,
         marks: Option<Vec<f64>>,
     ) -> PyResult<Motions> {
         let settings = self.settings_of_steps(&timing, audit)?;
@@ -114,7 +117,13 @@ impl Crane {
 
     /// The motions from which these memories are: they go on with the same numbers, to the last bit.
     #[pyo3(name = "_recalled")]
-    fn recalled(&self, py: Python<'_>, timing: Timing, audit: bool, memories: Vec<Vec<f64>>) -> PyResult<Motions> {
+    fn recalled(
+        &self,
+        py: Python<'_>,
+        timing: Keys<Timing>,
+        audit: bool,
+        memories: Vec<Vec<f64>>,
+    ) -> PyResult<Motions> {
         let settings = self.settings_of_steps(&timing, audit)?;
         let recalled = map_rows(py, memories.len(), |row, _| {
             let crane = self.of_row(row.min(self.parameters.rows().saturating_sub(1)));
@@ -165,10 +174,10 @@ impl Motions {
         py: Python<'py>,
         dt: f64,
         steps: usize,
-        inputs: &Bound<'py, PyDict>,
+        inputs: Dict<'py>,
         linear: bool,
-    ) -> PyResult<Bound<'py, PyTuple>> {
-        let (changes, count) = (self.changes(inputs, steps)?, self.rows.len());
+    ) -> PyResult<(Numbers<'py>, Numbers<'py>, Numbers<'py>)> {
+        let (changes, count) = (self.changes(&inputs, steps)?, self.rows.len());
         let paths = self.paths(py, dt, steps, &changes, linear)?;
         let (mut t, mut q, mut v) = (Vec::new(), Vec::new(), Vec::new());
         let width = 2 * self.n + 1;
@@ -182,8 +191,8 @@ impl Motions {
             }
         }
         let shape = [steps, count];
-        let numbers = [array(py, t, &shape, &[])?, array(py, q, &shape, &[self.n])?, array(py, v, &shape, &[self.n])?];
-        PyTuple::new(py, numbers.map(fixed))
+        let numbers = |numbers, of_row: &[usize]| array(py, numbers, &shape, of_row).map(fixed);
+        Ok((numbers(t, &[])?, numbers(q, &[self.n])?, numbers(v, &[self.n])?))
     }
 
     /// Advances all by `dt`, s, with new values, (rows, inputs), of inputs by their places in the spec. Returns times, poses and rates, (rows, 1 + 2 n): as
@@ -193,11 +202,11 @@ impl Motions {
         py: Python<'py>,
         dt: f64,
         places: Vec<usize>,
-        values: &Bound<'py, PyAny>,
+        values: ArrayLike<'py>,
         linear: bool,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    ) -> Array<'py> {
         let count = self.rows.len();
-        let argument = Argument::of_width("values", values, places.len(), "one for each input")?;
+        let argument = Argument::of_width("values", &values, places.len(), "one for each input")?;
         if argument.shape != [count] || argument.numbers.iter().any(|number| !number.is_finite()) {
             return Err(PyValueError::new_err(format!("values: give {count} rows of finite numbers")));
         }
@@ -212,7 +221,7 @@ impl Motions {
 
     /// States reached: times (rows), poses and rates (rows, n), states of forces (rows, states), and work of the drives, dissipated energy and
     /// work of the loads since the start, J, (rows, 3).
-    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    fn states<'py>(&self, py: Python<'py>) -> PyResult<States<'py>> {
         let mut all: [Vec<f64>; 5] = Default::default();
         for row in 0..self.rows.len() {
             let now = self.row(row);
@@ -221,16 +230,14 @@ impl Motions {
                 all.extend_from_slice(own);
             }
         }
-        let (rows, widths) = ([self.rows.len()], [None, Some(self.n), Some(self.n), Some(self.states), Some(3)]);
-        let arrays = all.into_iter().zip(widths).map(|(numbers, width)| {
-            let of_row: Vec<usize> = width.into_iter().collect();
-            array(py, numbers, &rows, &of_row).map(fixed)
-        });
-        PyTuple::new(py, arrays.collect::<PyResult<Vec<_>>>()?)
+        let of_rows = |numbers, width: &[usize]| array(py, numbers, &[self.rows.len()], width).map(fixed);
+        let [t, q, v, x, work] = all;
+        let (t, q, v) = (of_rows(t, &[])?, of_rows(q, &[self.n])?, of_rows(v, &[self.n])?);
+        Ok((t, q, v, of_rows(x, &[self.states])?, of_rows(work, &[3])?))
     }
 
     /// The live parameters, (rows, parameters), which events may have set.
-    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn parameters<'py>(&self, py: Python<'py>) -> Array<'py> {
         let of_row = |row: usize| {
             let now = self.row(row);
             let crane = now.motion.crane();
@@ -238,17 +245,17 @@ impl Motions {
         };
         let rows: Vec<Vec<f64>> = (0..self.rows.len()).map(of_row).collect();
         let width = rows.first().map_or(0, Vec::len);
-        array(py, rows.concat(), &[self.rows.len()], &[width])
+        array(py, rows.concat(), &[self.rows.len()], &[width]).map(Numbers::from)
     }
 
     /// What events of a row have done, by name: the time of each, s; 0 if it is still to come, NaN if its condition has to cease before, −1 if its time was
     /// before the start.
-    fn marks<'py>(&self, py: Python<'py>, row: usize) -> PyResult<Bound<'py, PyDict>> {
+    fn marks<'py>(&self, py: Python<'py>, row: usize) -> PyResult<Dict<'py, hints::Float>> {
         self.check_row(row)?;
         let (now, all) = (self.row(row), PyDict::new(py));
         let events = &now.motion.crane().description().events;
         events.iter().zip(now.motion.marks()).try_for_each(|(event, mark)| all.set_item(&*event.name, mark))?;
-        Ok(all)
+        Ok(all.into())
     }
 
     /// Why each row ended; None for those that go on.
@@ -270,24 +277,24 @@ impl Motions {
         Ok(())
     }
 
-    /// Whether inputs can be set, and released, while the motions go on: they do not follow motions of the spec.
+    /// Whether an input can be set, and released, while the motions go on: it does not follow a motion of the spec.
     fn can_set(&self, name: &str) -> bool {
         let index = self.inputs.iter().position(|(known, _)| **known == *name);
         index.is_some_and(|index| (0..self.rows.len()).all(|row| self.row(row).motion.can_set(index)))
     }
 
     /// Steps, rejections, evaluations and factorisations so far, of a row.
-    fn statistics<'py>(&self, py: Python<'py>, row: usize) -> PyResult<Bound<'py, PyDict>> {
+    fn statistics<'py>(&self, py: Python<'py>, row: usize) -> PyResult<Dict<'py, hints::Int>> {
         self.check_row(row)?;
         statistics(py, &self.row(row).motion.run().statistics)
     }
 
     /// All numbers from which the motion of a row can be made again.
-    fn memory<'py>(&self, py: Python<'py>, row: usize) -> PyResult<Bound<'py, PyAny>> {
+    fn memory<'py>(&self, py: Python<'py>, row: usize) -> Array<'py> {
         self.check_row(row)?;
         let memory = self.row(row).motion.memory();
         let length = memory.len();
-        Ok(fixed(array(py, memory, &[], &[length])?).into_any())
+        array(py, memory, &[], &[length]).map(fixed)
     }
 
     /// Exchanges rows for those of other motions of the same cranes, one after the other.
@@ -380,9 +387,9 @@ impl Motions {
 }
 
 /// An array that cannot be changed: a change would not move a crane.
-fn fixed(numbers: Bound<'_, numpy::PyArrayDyn<f64>>) -> Bound<'_, numpy::PyArrayDyn<f64>> {
+fn fixed(numbers: Bound<'_, PyArrayDyn<f64>>) -> Numbers<'_> {
     numbers.readwrite().make_nonwriteable();
-    numbers
+    numbers.into()
 }
 
 /// The failure of a motion, as an exception.

@@ -5,11 +5,11 @@ use crane_live::LiveCrane;
 use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::sections::stressed_sections;
 use crane_model::{Stress, tipping};
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
 use crate::crane::Crane;
-use crate::evaluation::{Given, Moment, StateArguments};
+use crate::evaluation::{Moment, StateArguments};
+use crate::types::{Array, ArrayLike, Given};
 
 /// Numbers of a section: normal, shear, torsional and equivalent stress, utilisation.
 const OF_SECTION: usize = 5;
@@ -24,14 +24,18 @@ impl Crane {
     fn internal_forces<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: Given<'_, 'py>,
-        a: Given<'_, 'py>,
-        t: Given<'_, 'py>,
+        q: ArrayLike<'py>,
+        v: Given<'py>,
+        a: Given<'py>,
+        t: Given<'py>,
         invalid: &str,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let rest = self.rest(py);
-        let state = StateArguments { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
+    ) -> Array<'py> {
+        let state = StateArguments {
+            t,
+            q: Some(q),
+            v: v.or_else(|| Some(self.rest(py))),
+            a: a.or_else(|| Some(self.rest(py))),
+        };
         let of_row = [self.live.description().cuts().len(), 6];
         if self.live.description().has_valves() {
             return self.one_by_one(py, state, &of_row, invalid, write_wrenches);
@@ -45,14 +49,18 @@ impl Crane {
     fn strength_rows<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: Given<'_, 'py>,
-        a: Given<'_, 'py>,
-        t: Given<'_, 'py>,
+        q: ArrayLike<'py>,
+        v: Given<'py>,
+        a: Given<'py>,
+        t: Given<'py>,
         invalid: &str,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let rest = self.rest(py);
-        let state = StateArguments { t, q: Some(q), v: Some(v.unwrap_or(&rest)), a: Some(a.unwrap_or(&rest)) };
+    ) -> Array<'py> {
+        let state = StateArguments {
+            t,
+            q: Some(q),
+            v: v.or_else(|| Some(self.rest(py))),
+            a: a.or_else(|| Some(self.rest(py))),
+        };
         let width = OF_SECTION * self.live.description().sections.len() + OF_LINE;
         self.one_by_one(py, state, &[width], invalid, write_wrenches_of)
     }
@@ -60,8 +68,8 @@ impl Crane {
 
 impl Crane {
     /// Rates and accelerations at rest.
-    fn rest<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        numpy::PyArray1::<f64>::zeros(py, self.live.size(), false).into_any()
+    fn rest<'py>(&self, py: Python<'py>) -> ArrayLike<'py> {
+        numpy::PyArray1::<f64>::zeros(py, self.live.size(), false).into_any().into()
     }
 }
 

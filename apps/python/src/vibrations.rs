@@ -6,16 +6,16 @@ use crane_model::dynamics::Method;
 use crane_model::modes::{DampedMode, Held, Mode, NoModes, damped, steady, undamped};
 use crane_model::runs::limiting_modes;
 use crane_model::stability::{cause, limit};
-use numpy::PyArrayDyn;
 use pyo3::exceptions::{PyArithmeticError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{Given, Moment, STATE, StateArguments};
+use crate::evaluation::{Moment, STATE, StateArguments};
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::map_rows;
+use crate::types::{Array, ArrayLike, Dict, Given};
 
 /// Modes about a pose.
 struct Modes {
@@ -49,12 +49,12 @@ impl Crane {
     fn small_motions_about<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        a: &Bound<'py, PyAny>,
-        t: Given<'_, 'py>,
+        q: ArrayLike<'py>,
+        v: ArrayLike<'py>,
+        a: ArrayLike<'py>,
+        t: Given<'py>,
         invalid: &str,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    ) -> Array<'py> {
         self.refuse_motions()?;
         let n = self.live.size();
         self.one_by_one(
@@ -80,12 +80,12 @@ impl Crane {
         &self,
         py: Python<'py>,
         held: Vec<(usize, bool)>,
-        start: &Bound<'py, PyAny>,
-        rates: &Bound<'py, PyAny>,
-        positions: &Bound<'py, PyAny>,
-        t: Given<'_, 'py>,
+        start: ArrayLike<'py>,
+        rates: ArrayLike<'py>,
+        positions: ArrayLike<'py>,
+        t: Given<'py>,
         invalid: &str,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    ) -> Array<'py> {
         self.refuse_motions()?;
         let n = self.live.size();
         if let Some((beyond, _)) = held.iter().find(|(coordinate, _)| *coordinate >= n) {
@@ -116,8 +116,8 @@ impl Crane {
 
     /// Modes about poses, over parameters and poses: `Crane.modes` names them.
     #[pyo3(name = "_modes", signature = (q, invalid="raise"))]
-    fn mode_rows<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, invalid: &str) -> PyResult<Bound<'py, PyDict>> {
-        let (shape, found) = self.about_poses(py, q, invalid, Modes::new)?;
+    fn mode_rows<'py>(&self, py: Python<'py>, q: ArrayLike<'py>, invalid: &str) -> PyResult<Dict<'py>> {
+        let (shape, found) = self.about_poses(py, &q, invalid, Modes::new)?;
         let count = |of: fn(&Modes) -> usize| found.iter().flatten().map(of).max().unwrap_or(0);
         let (most, most_damped) = (count(|modes| modes.undamped.len()), count(|modes| modes.damped.len()));
         let n = self.live.size();
@@ -154,18 +154,13 @@ impl Crane {
         all.set_item("dominating", dominating(&of_undamped))?;
         all.set_item("damped_dominating", dominating(&of_damped))?;
         all.set_item("shape", shape)?;
-        Ok(all)
+        Ok(all.into())
     }
 
     /// The largest stable step of each method about poses, s, and what limits it: `Crane.stability` names them.
     #[pyo3(name = "_stable_steps", signature = (q, invalid="raise"))]
-    fn stable_step_rows<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        invalid: &str,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let (shape, found) = self.about_poses(py, q, invalid, stable_steps)?;
+    fn stable_step_rows<'py>(&self, py: Python<'py>, q: ArrayLike<'py>, invalid: &str) -> PyResult<Dict<'py>> {
+        let (shape, found) = self.about_poses(py, &q, invalid, stable_steps)?;
         let steps = PyDict::new(py);
         for (index, method) in Method::ALL.iter().enumerate() {
             let row = |found: &Option<Vec<(f64, String)>>| match found {
@@ -178,7 +173,7 @@ impl Crane {
         let all = PyDict::new(py);
         all.set_item("steps", steps)?;
         all.set_item("shape", shape)?;
-        Ok(all)
+        Ok(all.into())
     }
 }
 

@@ -132,26 +132,27 @@ def test_a_crane_goes_through_a_pickle(flexible):
 
 
 def test_the_stubs_say_what_the_module_says():
-    """Functions, arguments and docstrings of crane/_native.pyi are those of the native module."""
+    """Functions, arguments and docstrings of crane/_native.pyi are those that Python finds in the native module."""
     import ast
     import inspect
     from pathlib import Path
 
     from crane import _native
 
-    tree = ast.parse(Path(_native.__file__).with_name("_native.pyi").read_text())
-    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
-    stubs = {node.name: node for node in classes["Crane"].body if isinstance(node, ast.FunctionDef) and node.name != "__new__"}
-    native = {name for name in vars(_native.Crane) if not name.startswith("__")}
-    assert set(stubs) == native
-    for name, stub in stubs.items():
-        if any(isinstance(decorator, ast.Name) and decorator.id == "property" for decorator in stub.decorator_list):
-            continue
-        function = getattr(_native.Crane, name)
-        said = [argument.arg for argument in stub.args.posonlyargs + stub.args.args + stub.args.kwonlyargs]
-        assert said == list(inspect.signature(function).parameters), name
-        if "(..." in (ast.get_docstring(stub) or ""):
-            assert ast.get_docstring(stub) == inspect.getdoc(function), name
+    def names(node):
+        return {child.name: child for child in node.body if isinstance(child, ast.FunctionDef | ast.ClassDef)}
+
+    module = names(ast.parse(Path(_native.__file__).with_name("_native.pyi").read_text()))
+    assert set(module) == set(_native.__all__)
+    for owner, stubs in [(_native, module), *((getattr(_native, name), names(module[name])) for name in ("Crane", "Motions"))]:
+        assert {name for name in vars(owner) if not name.startswith("__")} == {name for name in stubs if not name.startswith("__")}
+        for name, stub in stubs.items():
+            native = inspect.getattr_static(owner, name)
+            if not name.startswith("__"):
+                assert ast.get_docstring(stub) == inspect.getdoc(native), name
+            if callable(native) and isinstance(stub, ast.FunctionDef) and name != "__new__":
+                said = [argument.arg for argument in stub.args.posonlyargs + stub.args.args + stub.args.kwonlyargs]
+                assert said == list(inspect.signature(native).parameters), name
 
 
 def test_a_text_extends_shipped_cranes_and_files(tmp_path, monkeypatch, knuckle):

@@ -9,6 +9,8 @@ use crate::python::CHECKS;
 use crate::{step, workspace};
 
 const FOLDER: &str = "apps/python";
+/// The stub of the native part.
+const STUB: &str = "apps/python/crane/_native.pyi";
 
 /// Builds the wheel of the package into a folder, in place of others there, and returns its path.
 pub fn build_wheel(folder: &Path) -> Result<PathBuf, String> {
@@ -48,6 +50,43 @@ fn python(arguments: &[&str]) -> Command {
         command.env("PATH", path);
     }
     command
+}
+
+/// Writes the stub of the native part from its sources.
+pub fn write_stub() -> Result<(), String> {
+    fs::write(workspace::root().join(STUB), stub()?).map_err(|error| format!("{STUB}: {error}"))
+}
+
+/// Checks that the stub is that of the sources.
+pub fn check_stub() -> Result<(), String> {
+    let (stub, written) = (stub()?, workspace::read_file(STUB)?);
+    match stub.lines().zip(written.lines()).find(|(line, written)| line != written) {
+        _ if stub == written => Ok(()),
+        Some((line, written)) => Err(format!("{STUB} has `{written}`, sources `{line}`: cargo xtask bless stub")),
+        None => Err(format!("{STUB} and sources differ in length: cargo xtask bless stub")),
+    }
+}
+
+/// The stub: names, types and documentation of the native part, which a build of its own contains, not optimised.
+fn stub() -> Result<String, String> {
+    let quick = "profile.release.package.crane-python.opt-level=0";
+    let build = ["build", "--release", "--package", "crane-python", "--example", "stub", "--features", "stub"];
+    let cargo = || {
+        let mut cargo = Command::new(step::cargo());
+        cargo.current_dir(workspace::root());
+        cargo
+    };
+    step::run_to_end(cargo().args(build).args(["--config", quick]))?;
+    let library = format!("release/examples/{}stub{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let mut print = cargo();
+    print.args(["run", "--quiet", "--locked", "--manifest-path", "tools/stub/Cargo.toml", "--target-dir"]);
+    print.arg(workspace::target().join("stub")).arg("--").arg(workspace::target().join(library)).arg("_native");
+    let printed = print.output().map_err(|error| format!("cargo: {error}"))?;
+    if !printed.status.success() {
+        return Err(String::from_utf8_lossy(&printed.stderr).into_owned());
+    }
+    let text = String::from_utf8(printed.stdout).map_err(|error| error.to_string())?;
+    Ok(format!("# Written by `cargo xtask bless` from {FOLDER}/src.\n{text}"))
 }
 
 /// Installs the package's wheel into the environment of the checks, and runs its tests there, in a folder that does not hold its sources.
