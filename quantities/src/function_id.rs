@@ -282,14 +282,6 @@ macro_rules! function_id {
                 }
             }
 
-            /// What else must be known about it, line by line.
-            #[must_use]
-            pub const fn remarks(self) -> &'static [&'static str] {
-                match self {
-                    $($(FunctionId::$id => &[$($remark),*],)*)*
-                }
-            }
-
             /// Equations it implements, and their source.
             #[must_use]
             pub const fn equation(self) -> &'static str {
