@@ -4,7 +4,7 @@
 
 use bytemuck::cast_slice_mut;
 use crane_quantities::{Count, Part, quantities};
-use nalgebra::{Cholesky, Const, DefaultAllocator, Dim, OMatrix, SMatrix, SVector, allocator::Allocator};
+use nalgebra::{Cholesky, SMatrix, SVector};
 
 use crate::{
     Description, LoopJointInfo, ParameterError, StageInfo, fill_links,
@@ -297,19 +297,7 @@ impl<const N: usize> Linearisation<N> {
     ///
     /// `None` unless A is positive definite. This needs neither `std` nor a heap.
     pub fn state_blocks(&self) -> Option<(SMatrix<f64, N, N>, SMatrix<f64, N, N>)> {
-        state_blocks::<Const<N>>(self.mass, &self.stiffness, &self.damping).map(Into::into)
+        let mass = self.mass.cholesky()?;
+        Some((-mass.solve(&self.stiffness), -mass.solve(&self.damping)))
     }
-}
-
-/// `(−A⁻¹K, −A⁻¹D)` of matrices of any size, by Cholesky's factors of A.
-pub(crate) fn state_blocks<D: Dim>(
-    mass: OMatrix<f64, D, D>,
-    stiffness: &OMatrix<f64, D, D>,
-    damping: &OMatrix<f64, D, D>,
-) -> Option<[OMatrix<f64, D, D>; 2]>
-where
-    DefaultAllocator: Allocator<D, D>,
-{
-    let mass = mass.cholesky()?;
-    Some([-mass.solve(stiffness), -mass.solve(damping)])
 }

@@ -95,15 +95,11 @@ fn ask(options: &arguments::Margins, crane: &LiveCrane) -> Outcome<MarginsReques
         let names: Vec<String> = all.iter().map(|output| output.column.name.clone()).collect();
         unknown(measured, "to measure", &names)
     })?;
-    let Controller { p, i, d, filter, ref lead, delay, lag } = options.controller;
+    let Controller { p, i, d, filter, lead, delay, lag } = options.controller;
     if [p, i, d].iter().all(|gain| *gain == 0.0) {
         return Err(Problem::usage("all gains are zero: the loop is open", "give one, as in `--p 1.3`"));
     }
-    let lead = match lead.as_deref() {
-        Some(&[above, below]) => [above, below],
-        _ => [0.0; 2],
-    };
-    let of = Loop { p, i, d, filter, lead, delay, lag };
+    let of = Loop { p, i, d, filter, lead: lead.unwrap_or_default(), delay, lag };
     if let Some((name, value, needed)) = of.mistake() {
         return Err(Problem::usage(format!("`--{name} {value:e}` is out of range"), format!("write {needed}")));
     }
@@ -185,8 +181,13 @@ fn of_pose(asked: &MarginsRequest, crane: &LiveCrane, values: &[(usize, f64)]) -
 impl MarginsRequest {
     /// Whether a loop is unstable or its phase margin is below what it should be.
     fn falls_short(&self, margins: &Margins) -> bool {
-        !margins.stable || margins.phase.is_some_and(|(phase, _)| phase.abs() < self.least)
+        !margins.stable || phase_margin(margins).is_some_and(|phase| phase < self.least)
     }
+}
+
+/// The phase margin of a loop, rad: of a stable one, how far it is from the point −1 on either side.
+fn phase_margin(margins: &Margins) -> Option<f64> {
+    margins.phase.map(|(phase, _)| if margins.stable { phase.abs() } else { phase })
 }
 
 /// A margin of a loop.
@@ -227,9 +228,7 @@ fn facts(report: &mut Report, asked: &MarginsRequest, description: &Description,
     report.fact_as("short_loops", "unstable or below it", short, "");
     // A loop may have all of its phase margin and hardly any of the others.
     let all: [(&str, &str, Least); 3] = [
-        ("least phase margin", "°; 45° or more is usual", |margins| {
-            margins.phase.map(|(phase, _)| phase.abs().to_degrees())
-        }),
+        ("least phase margin", "°; 45° or more is usual", |margins| phase_margin(margins).map(f64::to_degrees)),
         ("least gain margin", "; 2 or more is usual", |margins| margins.gain.map(|(gain, _)| gain)),
         ("least distance from −1", "; 0.5 or more is usual", |margins| {
             margins.distance.map(|(distance, _)| distance)

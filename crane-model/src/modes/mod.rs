@@ -34,6 +34,8 @@ pub enum NoModes {
     MassMatrix,
     /// The eigenvalue iteration did not converge.
     Eigenvalues,
+    /// A coefficient of the small motions is not a number: the crane does not have the functions for them, or forces overflow.
+    NotFinite,
 }
 
 impl fmt::Display for NoModes {
@@ -41,6 +43,10 @@ impl fmt::Display for NoModes {
         f.write_str(match self {
             NoModes::MassMatrix => "no modes: the mass matrix is not positive definite",
             NoModes::Eigenvalues => "no modes: the eigenvalue iteration did not converge",
+            NoModes::NotFinite => {
+                "no modes: mass, stiffness or damping is not a finite number: forces overflow, or `analyses` of the spec leave out `modes`, \
+                 or `motion_derivatives` of small motions about a motion"
+            }
         })
     }
 }

@@ -1,13 +1,12 @@
 //! Coefficients of small motions, of any number of coordinates.
 
-use nalgebra::{ComplexField, DMatrix, DVector, DVectorView};
+use nalgebra::{Cholesky, ComplexField, DMatrix, DVector, DVectorView, Dyn};
 
 use super::NoModes;
 use crate::{
     CoordinateRole, Linearisation,
     dyn_crane::DynCrane,
     loop_joints::{closed_motions, geometric_stiffness, required},
-    model::state_blocks,
 };
 
 /// A coordinate is dominant in a mode if its share of the energy is at least this fraction of the largest one.
@@ -134,14 +133,34 @@ impl SmallMotions {
         shape
     }
 
+    /// Cholesky's factors of A.
+    ///
+    /// # Errors
+    /// A is not positive definite, or a coefficient is not a finite number.
+    pub(super) fn factors(&self) -> Result<Cholesky<f64, Dyn>, NoModes> {
+        let Self { mass, stiffness, damping, .. } = self;
+        if [mass, stiffness, damping].into_iter().flatten().any(|number| !number.is_finite()) {
+            return Err(NoModes::NotFinite);
+        }
+        mass.clone().cholesky().ok_or(NoModes::MassMatrix)
+    }
+
+    /// `−A⁻¹K` and `−A⁻¹D`.
+    ///
+    /// # Errors
+    /// As [`factors`](Self::factors).
+    pub(super) fn state_blocks(&self) -> Result<[DMatrix<f64>; 2], NoModes> {
+        let factors = self.factors()?;
+        Ok([&self.stiffness, &self.damping].map(|matrix| -factors.solve(matrix)))
+    }
+
     /// State matrix `[[0, I], [−A⁻¹K, −A⁻¹D]]` of `d/dt [δq; δq̇]`, 2N × 2N.
     ///
     /// # Errors
-    /// The mass matrix is not positive definite.
+    /// The mass matrix is not positive definite, or a coefficient is not a finite number.
     pub fn state_matrix(&self) -> Result<DMatrix<f64>, NoModes> {
         let n = self.mass.nrows();
-        let [stiffness, damping] =
-            state_blocks(self.mass.clone(), &self.stiffness, &self.damping).ok_or(NoModes::MassMatrix)?;
+        let [stiffness, damping] = self.state_blocks()?;
         let mut state = DMatrix::zeros(2 * n, 2 * n);
         state.view_mut((0, n), (n, n)).fill_with_identity();
         state.view_mut((n, 0), (n, n)).copy_from(&stiffness);

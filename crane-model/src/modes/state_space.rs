@@ -3,9 +3,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::{DampedMode, NoModes, SmallMotions, damped::eigenpairs};
-use crate::{
-    StateAt, dyn_crane::DynCrane, force_states::ForceStates, model::state_blocks, stateful_force::StatefulForce,
-};
+use crate::{StateAt, dyn_crane::DynCrane, force_states::ForceStates, stateful_force::StatefulForce};
 
 /// The state matrix M of `d/dt [δq; δq̇; δx] = M [δq; δq̇; δx]`: the coordinates that can move, their rates, and the states of forces.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,9 +45,8 @@ impl StateSpace {
                 }
             }
         }
-        let [stiffness, damping] =
-            state_blocks(motions.mass.clone(), &motions.stiffness, &motions.damping).ok_or(NoModes::MassMatrix)?;
-        let pushed = motions.mass.clone().cholesky().ok_or(NoModes::MassMatrix)?.solve(&pushes);
+        let [stiffness, damping] = motions.state_blocks()?;
+        let pushed = motions.factors()?.solve(&pushes);
         let mut matrix = DMatrix::zeros(2 * n + m, 2 * n + m);
         matrix.view_mut((0, n), (n, n)).fill_with_identity();
         matrix.view_mut((n, 0), (n, n)).copy_from(&stiffness);
@@ -91,7 +88,7 @@ impl StateSpace {
     /// The mass matrix is not positive definite.
     pub(crate) fn accelerations_by(&self, forces: &[f64]) -> Result<DVector<f64>, NoModes> {
         let along = self.motions.along_unknowns(|coordinate| forces[coordinate]);
-        Ok(self.motions.mass.clone().cholesky().ok_or(NoModes::MassMatrix)?.solve(&along))
+        Ok(self.motions.factors()?.solve(&along))
     }
 
     /// A, D and K of the coordinates in the state, with what forces with states contribute directly.

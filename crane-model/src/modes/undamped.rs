@@ -32,7 +32,7 @@ pub fn undamped(motions: &SmallMotions) -> Result<Vec<Mode>, NoModes> {
     if motions.mass.is_empty() {
         return Ok(Vec::new());
     }
-    let factor = motions.mass.clone().cholesky().ok_or(NoModes::MassMatrix)?.unpack();
+    let factor = motions.factors()?.unpack();
     let half = factor.solve_lower_triangular(&motions.stiffness).ok_or(NoModes::MassMatrix)?;
     let whole = factor.solve_lower_triangular(&half.transpose()).ok_or(NoModes::MassMatrix)?;
     // Symmetric up to rounding; the eigenvalue routine reads only one half.

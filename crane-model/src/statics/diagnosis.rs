@@ -331,7 +331,7 @@ impl fmt::Display for Diagnosis {
                 Ok(())
             }
             Self::Yields { margin } => {
-                write!(f, "; its feet yield until it falls: on rigid feet the tipping margin would be {margin:.2}")
+                write!(f, "; its feet yield until it falls: on rigid feet the tipping margin would be {margin:.4}")
             }
             Self::RaisedFoot { foot, height } => {
                 let (size, side) = (height.abs(), if *height > 0.0 { "above" } else { "below" });

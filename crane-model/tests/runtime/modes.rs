@@ -3,7 +3,7 @@
 use crate::common::{DoublePendulum, GRAVITY, Lift};
 use crane_model::{
     CraneModel, Linearisation,
-    modes::{SmallMotions, damped, undamped},
+    modes::{NoModes, SmallMotions, damped, undamped},
 };
 use nalgebra::{Matrix2, Vector1, Vector2};
 
@@ -51,6 +51,17 @@ fn damping_ratio_and_frequency_of_one_mass() {
     let state = motions.state_matrix().expect("a mass");
     let expected = [0.0, -lift.stiffness / lift.mass, 1.0, -lift.damping / lift.mass];
     assert!(state.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{state}");
+}
+
+/// What a crane without the functions has: NaN, which is told, and is no mass matrix that is not positive definite.
+#[test]
+fn small_motions_that_are_no_numbers_are_told() {
+    let mut motions = SmallMotions::from(&Lift::default().linearise(&Vector1::zeros()));
+    motions.stiffness.fill(f64::NAN);
+    assert_eq!(
+        [undamped(&motions).err(), damped(&motions).err(), motions.state_matrix().err()],
+        [Some(NoModes::NotFinite); 3]
+    );
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crane_live::FunctionId;
 
 use super::{
     crane::{Analysis, Choice},
-    number::{above_zero, angle, count, duration, finite_number, margin, seconds},
+    number::{above_zero, angle, count, duration, finite_number, margin, seconds, two_durations},
     poses::{Combined, Held, Poses},
     run::{Folder, Timing},
 };
@@ -307,8 +307,8 @@ pub struct Controller {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = duration)]
     pub filter: f64,
     /// Time constants of numerator and denominator of a lead, s, as in `0.3,0.03`
-    #[arg(long, value_name = "SECONDS,SECONDS", value_delimiter = ',', num_args = 2, value_parser = duration)]
-    pub lead: Option<Vec<f64>>,
+    #[arg(long, value_name = "SECONDS,SECONDS", value_parser = two_durations)]
+    pub lead: Option<[f64; 2]>,
     /// Dead time, s
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = duration)]
     pub delay: f64,

@@ -22,6 +22,15 @@ pub fn duration(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "write a number of seconds of at least 0, such as 0.065".to_owned())
 }
 
+/// Two durations, separated by a comma.
+pub fn two_durations(text: &str) -> Result<[f64; 2], String> {
+    let two = text.split_once(',').map(|(one, other)| (duration(one.trim()), duration(other.trim())));
+    match two {
+        Some((Ok(one), Ok(other))) => Ok([one, other]),
+        _ => Err("write two numbers of seconds, such as 0.3,0.03".to_owned()),
+    }
+}
+
 /// Any finite number.
 pub fn finite_number(text: &str) -> Result<f64, String> {
     finite(text).ok_or_else(|| "write a number, such as 1.3".to_owned())

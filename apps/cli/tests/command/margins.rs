@@ -49,6 +49,16 @@ fn a_turntable_has_the_margins_of_its_formula() {
     ]);
     let phase = rate["margins"][0]["phase_margin"].as_f64().expect("a number");
     assert!((phase - (FRAC_PI_2 - 2.0 * 0.1)).abs() < 1e-7, "{phase}");
+    // With a lead that crosses at 4 rad/s: p √((1 + 1.2²)/(1 + 0.12²)) = 10 · 4.
+    let of_rate = ["margins", &spec, "--on", "torque", "--measure", "table_psi_rate"];
+    let p = (40.0 * ((1.0 + 0.12_f64.powi(2)) / (1.0 + 1.2_f64.powi(2))).sqrt()).to_string();
+    let found =
+        json(&[&of_rate[..], &["--p", &p, "--delay", "0.1", "--lead", "0.3,0.03", "--format", "json"]].concat());
+    let phase = found["margins"][0]["phase_margin"].as_f64().expect("a number");
+    assert!((phase - (FRAC_PI_2 + 1.2_f64.atan() - 0.12_f64.atan() - 4.0 * 0.1)).abs() < 1e-7, "{phase}");
+    // A loop that is unstable lacks phase: π/2 − 2.
+    let unstable = text(&crane(&[&of_rate[..], &["--p", "20", "--delay", "1", "-q"]].concat()).stdout);
+    assert!(unstable.contains("-24.592"), "{unstable}");
 }
 
 #[test]

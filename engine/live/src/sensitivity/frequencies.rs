@@ -21,8 +21,10 @@ use super::{Group, Output, Valued};
 use crate::dual::{DIRECTIONS, Dual8};
 use crate::machine::Number;
 
-/// Frequencies coincide if their squares differ by less than this fraction of them, or of the largest one: its rounding.
+/// Frequencies coincide if their squares differ by less than this fraction of them, or of the largest one: its rounding, some fifty times that of a number.
 const SAME: f64 = 1e-6;
+const SPLIT: f64 = 1e-14;
+/// Part of the largest square that rounding leaves in the form of any.
 const ROUNDING: f64 = 1e-13;
 /// Step of the central difference of what cylinders contribute, m or rad, as for the modes themselves: a relative error of 1e-8.
 const DIFFERENCE: f64 = 1e-4;
@@ -54,7 +56,7 @@ impl<'a> Frequencies<'a> {
         let found = undamped(&crane.small_motions_at(&rest.q)).ok()?;
         let greatest = found.iter().fold(0.0, |size: f64, mode| size.max(mode.omega_squared));
         let coincide = |a: &Mode, b: &Mode| {
-            (b.omega_squared - a.omega_squared).abs() <= SAME * b.omega_squared.abs() + ROUNDING * greatest
+            (b.omega_squared - a.omega_squared).abs() <= SAME * b.omega_squared.abs() + SPLIT * greatest
         };
         let asked = count.min(found.len());
         let mut clusters: Vec<[usize; 2]> = Vec::new();
@@ -74,9 +76,15 @@ impl<'a> Frequencies<'a> {
             Vibration { place: place(mode), omega_squared: mode.omega_squared, shape, multipliers }
         });
         let frequencies = Self { modes: modes.collect(), rest, asked, clusters };
-        for [first, end] in frequencies.clusters.iter().filter(|[first, end]| end - first > 1) {
+        for &[first, end] in frequencies.clusters.iter().filter(|[first, end]| end - first > 1) {
+            let [lowest, highest] = [first, end - 1].map(|index| frequencies.modes[index].omega_squared);
+            let does = if highest - lowest <= SAME * (end - first) as f64 * highest.abs() {
+                "coincide"
+            } else {
+                "differ by less than rounding leaves beside the stiffest spring, and are taken to coincide"
+            };
             notes.push(format!(
-                "frequencies {} to {end} coincide: their derivatives are those of the branches into which they part, in order",
+                "frequencies {} to {end} {does}: their derivatives are those of the branches into which they part, in order",
                 first + 1
             ));
         }

@@ -231,6 +231,59 @@ fn free_play_is_a_gap() {
     }
 }
 
+/// A load on a long rope that hangs to the side on a slope: about the lower feet the moments at rest are `m g (2.5 cos α + 4 sin α)` against
+/// `M g (1.5 cos α − 0.6 sin α)`. At the guess the load hangs beside the crane, and its moment is smaller.
+#[test]
+fn moments_of_a_crane_that_tips_are_those_at_rest() {
+    let foot = |name: &str, x: f64, y: f64| {
+        format!("- {{name: {name}, one_sided: true, at: [{x}, {y}, 0], stiffness: [2e7, 2e7, 2e7]}}\n")
+    };
+    let feet = [("fl", 2.0, 1.5), ("fr", 2.0, -1.5), ("rl", -2.0, 1.5), ("rr", -2.0, -1.5)];
+    let live = crane(&format!(
+        "format: 1\nname: slope\nslope: {{angle: 4 deg, towards: -90 deg}}\nlinks:\n\
+         - {{name: truck, joint: free, mass: 4000, com: [0, 0, 0.6], inertia: {{Ixx: 2500, Iyy: 8000, Izz: 9000}}}}\n\
+         - {{name: load, placement: {{transform: {{translation: [0, -4, 4]}}}}, joint: {{revolute: {{axis: x}}}}, mass: 2200, com: [0, 0, -2]}}\n\
+         supports:\n{}",
+        feet.map(|(name, x, y)| foot(name, x, y)).concat()
+    ));
+    let crane: &dyn DynCrane = &live;
+    let equilibrium = crane.equilibrium(&Statics::default());
+    let Diagnosis::Overturned { line, .. } = Diagnosis::new(crane, &equilibrium) else { panic!("{equilibrium}") };
+    let (sin, cos) = 4.0_f64.to_radians().sin_cos();
+    let expected = [2200.0 * 9.81 * (2.5 * cos + 4.0 * sin), 4000.0 * 9.81 * (1.5 * cos - 0.6 * sin)];
+    for (moment, expected) in [line.overturning, line.stabilising].into_iter().zip(expected) {
+        // Newton's tolerance.
+        assert!((moment / expected - 1.0).abs() < 1e-9, "{line:?} for {expected:?}");
+    }
+}
+
+/// At the guess a rope to the world is so tight that it would tip the truck, which yields by millimetres and stands; the rope of the load is slack
+/// there, so that nothing holds it. Statics finds no pose from there, and does not say that the truck tips.
+#[test]
+fn a_tight_rope_to_the_world_tips_no_crane() {
+    let foot = |name: &str, x: f64, y: f64| {
+        format!("- {{name: {name}, one_sided: true, at: [{x}, {y}, 0], stiffness: [1e7, 1e7, 2e7]}}\n")
+    };
+    let feet = [("fl", 2.0, 1.5), ("fr", 2.0, -1.5), ("rl", -2.0, 1.5), ("rr", -2.0, -1.5)];
+    for (guess, stands) in [(-1.0001, true), (-0.9, false)] {
+        let live = crane(&format!(
+            "format: 1\nname: guyed\nlinks:\n\
+             - {{name: truck, joint: free, mass: 4000, com: [-0.5, 0.1, 0.6], inertia: {{Ixx: 2500, Iyy: 8000, Izz: 9000}}}}\n\
+             - {{name: mast, placement: {{transform: {{translation: [0, 0, 1.2]}}}}, joint: fixed, mass: 500, com: [0.5, 0, 1.6], \
+             inertia: {{Ixx: 80, Iyy: 80, Izz: 20}}}}\n\
+             - {{name: load, placement: {{transform: {{translation: [3, 0, 1.6]}}}}, joint: {{prismatic: {{axis: z}}}}, mass: 0.01, com: [0, 0, 0]}}\n\
+             connectors:\n\
+             - {{name: guy, from: {{at: [-6, 3, 0]}}, to: {{link: mast, at: [-0.2, 0, 1.6]}}, law: {{rope: {{stiffness: 300 kN/m, length: 6.6, damping: 0.02}}}}}}\n\
+             - {{name: hang, from: {{link: mast, at: [3, 0, 1.6]}}, to: {{link: load, at: [0, 0, 0]}}, law: {{rope: {{stiffness: 1e6, length: 1, damping: 0.02}}}}}}\n\
+             guess: {{load_z: {guess}}}\nsupports:\n{}",
+            feet.map(|(name, x, y)| foot(name, x, y)).concat()
+        ));
+        let equilibrium = (&live as &dyn DynCrane).equilibrium(&Statics::default());
+        assert_eq!(equilibrium.is_stable(), stands, "{equilibrium}");
+        assert!(!matches!(equilibrium.status, Status::TipsOver { .. }), "{equilibrium}");
+    }
+}
+
 /// At twice the tipping load: about the near feet the truck holds with `M g a`, the load overturns with `m g (R − a)`, and the message says so.
 #[test]
 fn a_truck_that_tips_names_the_moments_and_the_links() {
