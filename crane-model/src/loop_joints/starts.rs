@@ -1,13 +1,13 @@
 //! Starts of runs on the loops: what is given stays as it is, and the rest is solved for.
 //!
-//! Positions that are not given move by Gauss–Newton steps, in the metric of A over these coordinates, until φ = 0; then rates that are not given
-//! by the least change in the same metric for which J v = 0:
+//! Positions that are not given move by Gauss–Newton steps in the metric of A + T² K, T = 1 s, over these coordinates, until φ = 0: free joints turn
+//! before springs K of beams, drives and supports yield. Then rates that are not given change least in the metric of A, so that J v = 0:
 //!
 //! ```text
 //! v_f ← v_f − A_ff⁻¹ J_fᵀ (J_f A_ff⁻¹ J_fᵀ)⁻¹ J v
 //! ```
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix6};
 
 use super::{Gap, Loops, Open};
 use crate::dyn_crane::DynCrane;
@@ -42,7 +42,7 @@ pub(crate) fn close_start(
     if loops.is_empty() {
         return Ok(());
     }
-    let mut mass = HeldMass::new(crane, &loops.prescribed);
+    let mut mass = HeldMass::with_springs(crane, &loops.prescribed);
     loops.assemble(crane, q, &mut |q, r, x| mass.solve(q, r, x)).map_err(|open| Gap::new(crane, open))?;
     let mut loops = Loops::holding(crane, &given.rates);
     let mut mass = HeldMass::new(crane, &loops.prescribed);
@@ -127,13 +127,32 @@ impl Loops {
 struct HeldMass<'a> {
     crane: &'a dyn DynCrane,
     held: Vec<usize>,
+    /// T² K is added.
+    has_springs: bool,
     pose: Vec<f64>,
     factors: Option<Cholesky<f64, Dyn>>,
 }
 
 impl<'a> HeldMass<'a> {
     fn new(crane: &'a dyn DynCrane, held: &[usize]) -> Self {
-        Self { crane, held: held.to_vec(), pose: Vec::new(), factors: None }
+        Self { crane, held: held.to_vec(), has_springs: false, pose: Vec::new(), factors: None }
+    }
+
+    /// With the springs, each times 1 s².
+    fn with_springs(crane: &'a dyn DynCrane, held: &[usize]) -> Self {
+        Self { has_springs: true, ..Self::new(crane, held) }
+    }
+
+    /// Adds the stiffness of springs on single coordinates, and over the base's.
+    fn add_springs(&self, q: &[f64], mass: &mut DMatrix<f64>) {
+        let mut joints = vec![[0.0; 2]; q.len()];
+        self.crane.joint_stiffness_and_damping(&mut joints);
+        joints.iter().enumerate().for_each(|(j, [stiffness, _])| mass[(j, j)] += stiffness);
+        let mut base = Matrix6::zeros();
+        self.crane.base_stiffness(q, &vec![0.0; q.len()], base.as_mut_slice());
+        let size = q.len().min(6);
+        let mut block = mass.view_mut((0, 0), (size, size));
+        block += base.view((0, 0), (size, size));
     }
 
     /// `A_ff⁻¹ r_f`; 0 for coordinates that are held, and everywhere without inertia: a run then says so.
@@ -141,6 +160,9 @@ impl<'a> HeldMass<'a> {
         if self.pose != q {
             let mut mass = DMatrix::zeros(q.len(), q.len());
             self.crane.mass_matrix(q, mass.as_mut_slice());
+            if self.has_springs {
+                self.add_springs(q, &mut mass);
+            }
             for &j in &self.held {
                 mass.row_mut(j).fill(0.0);
                 mass.column_mut(j).fill(0.0);
