@@ -83,8 +83,8 @@ pub fn export(options: &Export, registry: &Registry, out: &mut dyn Write) -> Out
             meshes = surfaces;
             let text = exchange::urdf(&chain, &parameters, &looks);
             vec![
-                (file.with_extension("springs.yaml"), exchange::springs(&chain, &parameters)),
                 (file.clone(), text.map_err(|failure| Problem::usage(failure.title, failure.help))?),
+                (file.with_extension("springs.yaml"), exchange::springs(&chain, &parameters)),
             ]
         }
         Language::Mjcf => {

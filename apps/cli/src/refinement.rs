@@ -6,7 +6,7 @@ use crane_codegen::{
 };
 use crane_live::LiveCrane;
 use crane_model::{
-    Description, Wrench,
+    CoordinateKind, Description, Wrench,
     dyn_crane::DynCrane,
     modes::undamped,
     sections::{Place, StressedSection, stressed},
@@ -27,6 +27,8 @@ const LOWEST: usize = 6;
 const CAUTION: f64 = 0.01;
 /// Part of the length of a beam within which places are one.
 const ONE_PLACE: f64 = 1e-6;
+/// Rotation of a joint from which a pose is another one, rad: meshes bend alike.
+const ANOTHER_POSE: f64 = 0.3;
 /// Change of a stress that is worth a caution.
 const CAUTION_OF_STRESS: f64 = 0.03;
 
@@ -72,10 +74,20 @@ impl OtherMesh {
         Ok(Self { crane: crane_with, share })
     }
 
-    /// At rest.
-    fn case<'a>(&'a self, label: &'a str) -> Result<Case<'a>, &'static str> {
-        let case = Case::new(label, &self.crane);
-        if case.equilibrium.is_stable() { Ok(case) } else { Err("the crane with other sections has no stable pose") }
+    /// At rest, in the pose of a case.
+    fn case<'a>(&'a self, own: &Case<'a>) -> Result<Case<'a>, &'static str> {
+        let case = Case::new(own.label, &self.crane);
+        if !case.equilibrium.is_stable() {
+            return Err("the crane with other sections has no stable pose");
+        }
+        let angles = |case: &Case<'_>| -> Vec<f64> {
+            let coordinates = case.crane.description().coordinates.iter().zip(&case.equilibrium.q);
+            let of_joints =
+                coordinates.filter(|(info, _)| info.kind == CoordinateKind::Rotation && !info.role.is_element());
+            of_joints.map(|(_, angle)| *angle).collect()
+        };
+        let turned = angles(own).into_iter().zip(angles(&case)).any(|(own, other)| (own - other).abs() > ANOTHER_POSE);
+        if turned { Err("from the same guess the crane with other sections rests in another pose") } else { Ok(case) }
     }
 }
 
@@ -85,7 +97,7 @@ impl OtherMesh {
 /// The modes of one of the cranes cannot be computed.
 pub fn changes(case: &Case<'_>, registry: &Registry) -> Outcome<Option<Vec<f64>>> {
     let Ok(mesh) = OtherMesh::new(case.crane, registry) else { return Ok(None) };
-    let Ok(other) = mesh.case(case.label) else { return Ok(None) };
+    let Ok(other) = mesh.case(case) else { return Ok(None) };
     let frequencies = |case: &Case<'_>| -> Outcome<Vec<Option<f64>>> {
         let modes = undamped(&case.crane.small_motions_at(&case.equilibrium.q))?;
         Ok(modes.iter().take(LOWEST).map(crane_model::modes::Mode::frequency).collect())
@@ -125,7 +137,7 @@ pub fn changes_of_stress(
         return None;
     }
     Some(OtherMesh::new(case.crane, registry).and_then(|mesh| {
-        let other = mesh.case(case.label)?;
+        let other = mesh.case(case)?;
         let description = other.crane.description();
         let finer = Instant::at_rest(other.crane, &other.equilibrium.q);
         let (stress_then, used_then) =
@@ -192,7 +204,7 @@ pub fn changes_of_points(case: &Case<'_>, registry: &Registry) -> Option<Result<
     let bends = case.crane.description().coordinates.iter().any(|coordinate| coordinate.role.is_element());
     (bends && !own.is_empty() && case.equilibrium.is_stable()).then(|| {
         let mesh = OtherMesh::new(case.crane, registry)?;
-        let other = places(&mesh.case(case.label)?);
+        let other = places(&mesh.case(case)?);
         Ok(own.iter().zip(&other).map(|(own, other)| mesh.share.abs() * (other - own).norm()).collect())
     })
 }

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     dyn_crane::DynCrane,
-    statics::{RestSearch, Status},
+    statics::{Diagnosis, RestSearch, Status},
 };
 
 /// Relative accuracy of a critical load.
@@ -61,6 +61,8 @@ pub enum NoCriticalLoad {
         load: f64,
         /// How statics ends with a little more.
         status: Status,
+        /// And why.
+        diagnosis: Diagnosis,
     },
 }
 
@@ -74,11 +76,13 @@ impl NoCriticalLoad {
             }
             Self::Never { critical: Critical::Tipping } => "no load was found with which the crane stands".to_owned(),
             Self::Beyond { load } => format!("not with up to {load} {unit}"),
-            Self::Otherwise { load, status: Status::Converged } => {
+            Self::Otherwise { load, status: Status::Converged, .. } => {
                 format!("with more than {load:.1} {unit} the crane gives way, and rests elsewhere")
             }
-            Self::Otherwise { load, status } => {
-                format!("with more than {load:.1} {unit} the crane does not rest, for another reason: {status}")
+            Self::Otherwise { load, status, diagnosis } => {
+                format!(
+                    "with more than {load:.1} {unit} the crane does not rest, for another reason: {status}{diagnosis}"
+                )
             }
         }
     }
@@ -131,23 +135,24 @@ pub fn critical_load(
     let load = best.ok_or(NoCriticalLoad::Never { critical })?.load;
     match governing {
         None => Err(NoCriticalLoad::Beyond { load }),
-        Some(Limit::Equilibrium) => {
-            let status = status_beyond(&mut posed, load);
-            match status {
-                Status::TipsOver { feet } if critical == Critical::Tipping => {
-                    Ok(CriticalLoad { load, location: feet.join(" – "), at_least })
-                }
-                status => Err(NoCriticalLoad::Otherwise { load, status }),
+        Some(Limit::Equilibrium) => match beyond(&mut posed, load) {
+            (Status::TipsOver { feet }, _) if critical == Critical::Tipping => {
+                Ok(CriticalLoad { load, location: feet.join(" – "), at_least })
             }
-        }
+            (status, diagnosis) => Err(NoCriticalLoad::Otherwise { load, status, diagnosis }),
+        },
         Some(limit) => Ok(CriticalLoad { load, location: limit.location(crane), at_least }),
     }
 }
 
-/// How statics ends with a little more than a load.
-fn status_beyond(posed: &mut Posed<'_>, load: f64) -> Status {
+/// How statics ends with a little more than a load, and why.
+fn beyond(posed: &mut Posed<'_>, load: f64) -> (Status, Diagnosis) {
     match posed.crane.set_parameter(posed.load, load * (1.0 + A_LITTLE)) {
-        Ok(()) => RestSearch { crane: posed.crane, positions: posed.positions }.find_from_guess().status,
-        Err(_) => Status::NotConverged,
+        Ok(()) => {
+            let equilibrium = RestSearch { crane: posed.crane, positions: posed.positions }.find_from_guess();
+            let diagnosis = Diagnosis::new(posed.crane, &equilibrium);
+            (equilibrium.status, diagnosis)
+        }
+        Err(_) => (Status::NotConverged, Diagnosis::Unknown),
     }
 }
