@@ -219,7 +219,7 @@ pub trait CraneModel<const N: usize>: Clone + Send + Sync + 'static {
         self.force_derivatives(t, q, v, forces);
         let factors = [of_residual.as_flattened(), of_mass.as_flattened()];
         with_workspace(self, |links, workspace| {
-            let forces = (forces.as_flattened(), derivatives::places(forces.as_flattened()));
+            let forces = (forces.as_flattened(), derivatives::Places::new(forces.as_flattened()));
             derivatives::forward_dynamics_derivatives(links, workspace, factors, forces, out.as_flattened_mut());
         });
     }

@@ -75,7 +75,7 @@ impl<C: Columns> Changes<C> {
                 }
             }
             for index in 0..15 {
-                of[index] = C::number(&units[index]);
+                of[index] = C::number(&units[index], 0);
             }
         }
     }

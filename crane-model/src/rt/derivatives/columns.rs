@@ -8,7 +8,7 @@ use core::ops::{Add, Mul, Neg};
 
 use wide::f64x2;
 
-use crate::rt::fused::Fused;
+use crate::rt::fused::{Fused, fma};
 use crate::rt::lanes::f64x8;
 
 /// Numbers of one state that can be added and multiplied.
@@ -37,8 +37,10 @@ pub trait Columns: Copy {
     fn zero() -> Self::Unit;
     /// A number of all columns in a lane.
     fn lane(number: &Self::Number, lane: usize) -> Self::Lane;
-    /// A number of the first column, from its states.
-    fn number(unit: &Self::Unit) -> Self::Number;
+    /// A number of a column, from its states.
+    fn number(unit: &Self::Unit, column: usize) -> Self::Number;
+    /// `number · unit + sum`, in vectors: of a loop that is as short as this one the compiler makes single numbers.
+    fn product_add(number: &Self::Number, unit: &Self::Unit, sum: &Self::Unit) -> Self::Unit;
     /// The first numbers of a list; zero where it ends.
     fn load(row: &[Self::Number]) -> Self::Unit;
     /// The numbers of eight units in two neighbouring lanes.
@@ -104,8 +106,13 @@ impl Columns for EightColumns {
     }
 
     #[inline(always)]
-    fn number(unit: &Lanes<f64, 8>) -> f64 {
-        unit.0[0]
+    fn number(unit: &Lanes<f64, 8>, column: usize) -> f64 {
+        unit.0[column]
+    }
+
+    #[inline(always)]
+    fn product_add(number: &f64, unit: &Lanes<f64, 8>, sum: &Lanes<f64, 8>) -> Lanes<f64, 8> {
+        EightStates::product_add(&f64x8::splat(*number), unit, sum)
     }
 
     #[inline(always)]
@@ -159,8 +166,13 @@ impl Columns for EightStates {
     }
 
     #[inline(always)]
-    fn number(unit: &Lanes<f64, 8>) -> f64x8 {
+    fn number(unit: &Lanes<f64, 8>, _: usize) -> f64x8 {
         f64x8::new(unit.0)
+    }
+
+    #[inline(always)]
+    fn product_add(number: &f64x8, unit: &Lanes<f64, 8>, sum: &Lanes<f64, 8>) -> Lanes<f64, 8> {
+        Lanes(fma(*number, f64x8::new(unit.0), f64x8::new(sum.0)).to_array())
     }
 
     #[inline(always)]
@@ -203,8 +215,13 @@ impl<T: Scalar> Columns for One<T> {
     }
 
     #[inline(always)]
-    fn number(unit: &[T; 1]) -> T {
-        unit[0]
+    fn number([number]: &[T; 1], _: usize) -> T {
+        *number
+    }
+
+    #[inline(always)]
+    fn product_add(number: &T, [unit]: &[T; 1], [sum]: &[T; 1]) -> [T; 1] {
+        [fma(*number, *unit, *sum)]
     }
 
     #[inline(always)]

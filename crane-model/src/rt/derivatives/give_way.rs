@@ -4,7 +4,7 @@
 
 use super::changes::{COLUMNS, Changes};
 use super::columns::{Columns, Constant};
-use super::residual::{own, spread};
+use super::residual::own;
 use super::sweeps::{Entry, States, Sweeps, mass};
 use super::vectors::three;
 use super::{Link, Own, combine};
@@ -36,7 +36,7 @@ pub(super) fn give_way<C: Columns>(
         for k in 0..3 {
             let column = COLUMNS - 3 + k;
             if let Some([answers, ..]) = row.get(column / C::WIDTH) {
-                joint.own[mass::ANSWER + k] = spread::<C>(answers)[column % C::WIDTH];
+                joint.own[mass::ANSWER + k] = C::number(answers, column % C::WIDTH);
             }
         }
     }

@@ -36,7 +36,6 @@ mod vectors;
 
 use core::ops::Range;
 
-use crate::rt::fused::fma;
 use changes::COLUMNS as OF_CHANGES;
 pub use changes::Changes;
 pub use columns::{Carried, Columns, Constant, EightColumns, EightStates, One};
@@ -102,7 +101,7 @@ fn combine<C: Columns, const COUNT: usize>(
         }
         unit.as_mut()[state] = make(lanes);
     }
-    C::number(&unit)
+    C::number(&unit, 0)
 }
 
 /// Whether some coordinate is not attached to the one in front of it.
@@ -194,13 +193,9 @@ impl Piece {
             return;
         }
         for unit in self.units.clone() {
-            let Some([x, ..]) = swept.get(i * self.stride + unit).copied() else { continue };
+            let Some(&[x, ..]) = swept.get(i * self.stride + unit) else { continue };
             let Some(entry) = swept.get_mut(j * self.stride + unit) else { continue };
-            let mut sum = entry[which];
-            for lane in 0..C::WIDTH * C::STATES {
-                sum.as_mut()[lane] = fma(C::lane(force, lane), x.as_ref()[lane], sum.as_ref()[lane]);
-            }
-            entry[which] = sum;
+            entry[which] = C::product_add(force, &x, &entry[which]);
         }
     }
 
@@ -209,29 +204,24 @@ impl Piece {
     fn write<C: Columns>(&self, n: usize, matrices: &[usize], swept: &[Entry<C>], out: &mut [C::Lane]) {
         let zero = C::zero();
         for unit in self.units.clone() {
+            let row = self.columns.start + unit * C::WIDTH;
+            let lanes = (self.columns.end - row).min(C::WIDTH) * C::STATES;
             for (index, matrix) in matrices.iter().enumerate() {
-                let mut starts = [usize::MAX; 8];
-                for lane in 0..C::WIDTH * C::STATES {
-                    let row = self.columns.start + unit * C::WIDTH + lane / C::STATES;
-                    if row < self.columns.end {
-                        starts[lane] = ((lane % C::STATES * matrices.len() + index) * n + row) * n;
-                    }
-                }
+                let start =
+                    |lane: usize| ((lane % C::STATES * matrices.len() + index) * n + row + lane / C::STATES) * n;
                 for first in (0..n).step_by(8) {
+                    // The last eight are complete, with some of those before.
+                    let first = first.min(n.saturating_sub(8));
                     let mut block = [&zero; 8];
                     for k in 0..8 {
                         let Some(entry) = swept.get((first + k) * self.stride + unit) else { break };
                         block[k] = &entry[*matrix];
                     }
-                    let count = (n - first).min(8);
-                    for pair in 0..(C::WIDTH * C::STATES).div_ceil(2) {
-                        for (side, line) in C::across(block, pair).into_iter().enumerate() {
-                            let start = starts[2 * pair + side].saturating_add(first);
-                            let Some(entries) = out.get_mut(start..start.saturating_add(count)) else { continue };
-                            match entries.first_chunk_mut() {
-                                Some(eight) => *eight = line,
-                                None => entries.iter_mut().zip(line).for_each(|(entry, number)| *entry = number),
-                            }
+                    for pair in 0..lanes.div_ceil(2) {
+                        let [one, other] = C::across(block, pair);
+                        write_line(&one, start(2 * pair) + first, n, out);
+                        if 2 * pair + 1 < lanes {
+                            write_line(&other, start(2 * pair + 1) + first, n, out);
                         }
                     }
                 }
@@ -240,11 +230,59 @@ impl Piece {
     }
 }
 
+/// Writes eight numbers of a row of `n`, or all.
+#[inline(always)]
+fn write_line<T: Copy>(line: &[T; 8], start: usize, n: usize, out: &mut [T]) {
+    let entries = out.get_mut(start..start + n.min(8)).unwrap_or_default();
+    match entries.first_chunk_mut() {
+        Some(eight) => *eight = *line,
+        // By constant places: else all lines would lie in memory.
+        None => {
+            for k in 0..8 {
+                if let Some(entry) = entries.get_mut(k) {
+                    *entry = line[k];
+                }
+            }
+        }
+    }
+}
+
 /// Places of some numbers, without most of those that are zero.
-pub fn places(numbers: &[f64]) -> impl Iterator<Item = usize> + Clone {
-    let is_zero = |eight: &[f64]| eight.iter().fold(0, |bits, number| bits | number.to_bits()) << 1 == 0;
-    let eights = numbers.chunks(8).enumerate().filter(move |(_, eight)| !is_zero(eight));
-    eights.flat_map(|(index, eight)| 8 * index..8 * index + eight.len())
+#[derive(Clone, Debug)]
+pub struct Places<'a, N> {
+    numbers: &'a [N],
+    next: usize,
+}
+
+impl<'a, N: Constant> Places<'a, N> {
+    /// Of these.
+    #[inline(always)]
+    pub fn new(numbers: &'a [N]) -> Self {
+        Places { numbers, next: 0 }
+    }
+}
+
+impl<N: Constant> Iterator for Places<'_, N> {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let Places { numbers, next } = self;
+        while next.is_multiple_of(8)
+            && let Some(eight) = numbers.get(*next..).and_then(|rest| rest.first_chunk::<8>())
+        {
+            let mut is_zero = true;
+            for k in 0..8 {
+                is_zero &= eight[k].is_zero();
+            }
+            if !is_zero {
+                break;
+            }
+            *next += 8;
+        }
+        *next += 1;
+        if *next <= numbers.len() { Some(*next - 1) } else { None }
+    }
 }
 
 /// A⁻¹, row by row, of each state; `factors`: those of [`mass_factors`](crate::CraneModel::mass_factors), row by row.
@@ -278,8 +316,10 @@ pub fn residual_derivatives<C: Columns>(
     }
     let slopes = Slopes::<C>::new(links, factors, rows, &mut []);
     let (of_q, of_v) = derivatives.split_at_mut(derivatives.len() / 2);
-    for (index, added) in (0..5 * links.len()).filter_map(|k| slopes.diagonal(k)) {
-        if let Some(entry) = of_q.get_mut(index) {
+    let diagonals = slopes.diagonals();
+    for k in Places::new(diagonals) {
+        let Some(added) = diagonals.get(k).filter(|added| !added.is_zero()) else { continue };
+        if let Some(entry) = of_q.get_mut(slopes.place(k)) {
             *entry = combine::<C, 2>([entry, added], |[entry, added]| entry + -added);
         }
     }
@@ -301,6 +341,7 @@ pub fn forward_dynamics_derivatives<C: Columns>(
     let Workspace { joints, rows, changes, swept, mut states, .. } = workspace;
     let n = links.len();
     let slopes = Slopes::<C>::new(links, of_residual, rows, changes);
+    let diagonals = slopes.diagonals();
     let mut sweeps = Sweeps::<C>::new(links, of_mass, joints);
     give_way(&mut sweeps, slopes.rows, changes, swept, &mut states);
     for piece in Piece::all::<C>(links, states.now.len()) {
@@ -310,8 +351,11 @@ pub fn forward_dynamics_derivatives<C: Columns>(
                 piece.add_force::<C>(n, index, force, swept);
             }
         }
-        for (index, added) in (0..5 * n).filter_map(|k| slopes.diagonal(k)) {
-            piece.add_force::<C>(n, index, &combine::<C, 1>([added], |[added]| -added), swept);
+        for k in Places::new(diagonals) {
+            if let Some(added) = diagonals.get(k) {
+                let force = combine::<C, 1>([added], |[added]| -added);
+                piece.add_force::<C>(n, slopes.place(k), &force, swept);
+            }
         }
         piece.write::<C>(n, &[1, 2, 0], swept, derivatives);
     }

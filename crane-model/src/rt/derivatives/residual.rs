@@ -123,14 +123,6 @@ fn flat<L: Copy>([a, b, c, d, e]: [Three<L>; 5]) -> [L; 15] {
     [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2], e[0], e[1], e[2]]
 }
 
-/// Numbers of some coordinates, each in its lane.
-#[inline(always)]
-pub(super) fn spread<C: Columns>(unit: &C::Unit) -> [C::Number; 8] {
-    let mut numbers = [C::Number::constant(0.0); 8];
-    C::store(unit, &mut numbers);
-    numbers
-}
-
 /// The derivatives of a residual.
 pub(super) struct Slopes<'a, C: Columns> {
     links: &'a [Link],
@@ -160,22 +152,21 @@ impl<'a, C: Columns> Slopes<'a, C> {
                     units[index].as_mut()[lane] = own[index];
                 }
             }
-            for index in 0..15 {
-                let numbers = spread::<C>(&units[index]);
-                for column in 0..C::WIDTH {
-                    let Some(own) = rows.get_mut(first + column) else { break };
-                    own[index] = numbers[column];
+            for column in 0..C::WIDTH {
+                let Some(own) = rows.get_mut(first + column) else { break };
+                for index in 0..15 {
+                    own[index] = C::number(&units[index], column);
                 }
             }
             if changes.is_empty() {
                 continue;
             }
             Self::vectors(&factors, &mut vectors);
-            for index in 0..15 {
-                let numbers = [spread::<C>(&vectors[0][index]), spread::<C>(&vectors[1][index])];
-                for column in 0..C::WIDTH {
-                    let Some(change) = changes.get_mut(first + column) else { break };
-                    (change.of[0][index], change.of[1][index]) = (numbers[0][column], numbers[1][column]);
+            for column in 0..C::WIDTH {
+                let Some(Changes { of, .. }) = changes.get_mut(first + column) else { break };
+                for index in 0..15 {
+                    (of[0][index], of[1][index]) =
+                        (C::number(&vectors[0][index], column), C::number(&vectors[1][index], column));
                 }
             }
         }
@@ -261,13 +252,17 @@ impl<'a, C: Columns> Slopes<'a, C> {
         }
     }
 
-    /// What a rotation vector, whose axes depend on its coordinates, adds to ∂r/∂q, on five diagonals: a place in the matrix and a number, if
-    /// it is not zero.
+    /// What rotation vectors, whose axes depend on their coordinates, add to ∂r/∂q, on five diagonals.
     #[inline(always)]
-    pub(super) fn diagonal(&self, k: usize) -> Option<(usize, &C::Number)> {
+    pub(super) fn diagonals(&self) -> &'a [C::Number] {
+        self.factors.get(rows::DIAGONALS * self.links.len()..).unwrap_or_default()
+    }
+
+    /// The place in the matrix of a number of the diagonals that is not zero.
+    #[inline(always)]
+    pub(super) fn place(&self, k: usize) -> usize {
         let n = self.links.len();
-        let added = self.factors.get(rows::DIAGONALS * n + k)?;
-        if added.is_zero() { None } else { Some(((k % n * n + k % n + k / n).checked_sub(2)?, added)) }
+        (k % n * n + k % n + k / n).saturating_sub(2)
     }
 }
 
