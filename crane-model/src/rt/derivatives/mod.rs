@@ -217,7 +217,10 @@ impl Piece {
                         let Some(entry) = swept.get((first + k) * self.stride + unit) else { break };
                         block[k] = &entry[*matrix];
                     }
-                    for pair in 0..lanes.div_ceil(2) {
+                    for pair in 0..(C::WIDTH * C::STATES).div_ceil(2) {
+                        if 2 * pair >= lanes {
+                            break;
+                        }
                         let [one, other] = C::across(block, pair);
                         write_line(&one, start(2 * pair) + first, n, out);
                         if 2 * pair + 1 < lanes {
