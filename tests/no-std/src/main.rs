@@ -2,9 +2,10 @@
 
 use std::hint::black_box;
 
+use bytemuck::Zeroable;
 use crane_model::dynamics::rk4::State;
 use crane_model::rt::lanes::splat;
-use crane_model::{CraneModel, Entry};
+use crane_model::CraneModel;
 use crane_quantities::{Extent, FunctionId, quantities};
 
 /// The arguments of functions, by their names in the table.
@@ -21,7 +22,7 @@ struct At<'a, V> {
 macro_rules! call {
     (other $($row:tt)*) => {};
     ([$item:ident; $count:ident] $length:ident $id:ident ($($name:tt)*) ($($argument:expr),*)) => {
-        let mut list = vec![Entry::ZERO; $length(FunctionId::$id)];
+        let mut list = vec![Zeroable::zeroed(); $length(FunctionId::$id)];
         $($name)*($($argument,)* &mut list);
         black_box(list);
     };
