@@ -1,7 +1,7 @@
 //! Starts of runs on the loops: what is given stays as it is, and the rest is solved for.
 //!
-//! Positions that are not given move by Gauss–Newton steps in the metric of A + T² K, T = 1 s, over these coordinates, until φ = 0: free joints turn
-//! before springs K of beams, drives and supports yield. Then rates that are not given change least in the metric of A, so that J v = 0:
+//! Positions that are not given move by Gauss–Newton steps in the metric of A + T² K, T = 100 s, over these coordinates, until φ = 0: free joints turn
+//! before springs K of beams, drives, supports and connectors yield. Then rates that are not given change least in the metric of A, so that J v = 0:
 //!
 //! ```text
 //! v_f ← v_f − A_ff⁻¹ J_fᵀ (J_f A_ff⁻¹ J_fᵀ)⁻¹ J v
@@ -15,6 +15,8 @@ use crate::dyn_crane::DynCrane;
 /// Gaps of a whole state up to this share of the loop's size, and rates of gaps up to this share of what is in them, are those of
 /// numbers that were written and read: the state is moved onto the loops.
 const SHARE: f64 = 1e-6;
+/// T², s²: a crane swings within some seconds, so that springs are much stiffer than inertia.
+const SPRINGS: f64 = 1e4;
 /// Rates below this are rounding, m/s and rad/s.
 const ROUNDING: f64 = 1e-9;
 
@@ -138,21 +140,28 @@ impl<'a> HeldMass<'a> {
         Self { crane, held: held.to_vec(), has_springs: false, pose: Vec::new(), factors: None }
     }
 
-    /// With the springs, each times 1 s².
+    /// With the springs, each times [`SPRINGS`].
     fn with_springs(crane: &'a dyn DynCrane, held: &[usize]) -> Self {
         Self { has_springs: true, ..Self::new(crane, held) }
     }
 
-    /// Adds the stiffness of springs on single coordinates, and over the base's.
+    /// Adds the stiffness of springs on single coordinates, over the base's, and of connectors.
     fn add_springs(&self, q: &[f64], mass: &mut DMatrix<f64>) {
         let mut joints = vec![[0.0; 2]; q.len()];
         self.crane.joint_stiffness_and_damping(&mut joints);
-        joints.iter().enumerate().for_each(|(j, [stiffness, _])| mass[(j, j)] += stiffness);
+        joints.iter().enumerate().for_each(|(j, [stiffness, _])| mass[(j, j)] += SPRINGS * stiffness);
         let mut base = Matrix6::zeros();
         self.crane.base_stiffness(q, &vec![0.0; q.len()], base.as_mut_slice());
         let size = q.len().min(6);
         let mut block = mass.view_mut((0, 0), (size, size));
-        block += base.view((0, 0), (size, size));
+        block += base.view((0, 0), (size, size)) * SPRINGS;
+        let tensions = self.crane.connector_tensions_at(0.0, q, &vec![0.0; q.len()]);
+        let mut rows = vec![0.0; tensions.len() * q.len()];
+        self.crane.connector_jacobians(q, &mut rows);
+        for (tension, row) in tensions.iter().zip(rows.chunks_exact(q.len().max(1))) {
+            let row = DVector::from_column_slice(row);
+            mass.ger(SPRINGS * tension.stiffness.max(0.0), &row, &row, 1.0);
+        }
     }
 
     /// `A_ff⁻¹ r_f`; 0 for coordinates that are held, and everywhere without inertia: a run then says so.

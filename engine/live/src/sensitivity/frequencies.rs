@@ -21,9 +21,9 @@ use super::{Group, Output, Valued};
 use crate::dual::{DIRECTIONS, Dual8};
 use crate::machine::Number;
 
-/// Frequencies coincide if their squares differ by less than this fraction of them, or of the largest one: its rounding, some fifty times that of a number.
+/// Frequencies coincide if their squares differ by less than this fraction of them, or of the largest one: a few times its rounding.
 const SAME: f64 = 1e-6;
-const SPLIT: f64 = 1e-14;
+const SPLIT: f64 = 1e-15;
 /// Part of the largest square that rounding leaves in the form of any.
 const ROUNDING: f64 = 1e-13;
 /// Step of the central difference of what cylinders contribute, m or rad, as for the modes themselves: a relative error of 1e-8.
