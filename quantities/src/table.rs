@@ -51,7 +51,8 @@ Common {
     PointAccelerations = point_accelerations(q, v, a) -> [vector; points] zero
         "Accelerations of the points of interest in the world frame, m/s²."
         "J q̈ + J̇ q̇ = R (a + α × r + ω × (ω × r))" python(q, v, a);
-    /// The forces of cylinders with a valve depend on their pressures and are not included.
+    /// The forces of cylinders with a valve depend on their pressures and are not included. Those of rigid drives are, as the efforts with which
+    /// `A q̈ = e + f` also holds in the rows of the coordinates that they prescribe; in an open chain.
     Forces = forces(t, q, v) -> vector zero
         "Generalized forces of everything except inertia and gravity, N and N m."
         "f_s + f_l + t_dr and viscous joints [Urbaś 2016, Eq. (23)]" python(q, v; t);
@@ -262,7 +263,8 @@ Modes {
 InternalForces {
     /// In the frame of each cut, about its origin. Inertia forces, weights, loads and the forces of connectors attached to it count: a joint or
     /// a section transmits what no connector carries past it, and supports act only on the base. The forces of cylinders with a valve are not
-    /// included, see [`cylinder_wrenches`](Self::cylinder_wrenches). At the ground it is the load on the foundation or on the supports. In a
+    /// included, see [`cylinder_wrenches`](Self::cylinder_wrenches), nor those of joints that close loops, see
+    /// [`loop_wrenches`](Self::loop_wrenches). At the ground it is the load on the foundation or on the supports. In a
     /// section of a beam it is `N, Qy, Qz` and `Mx, My, Mz`: a positive N is tension; Mx, My and Mz have the signs of the deformations that
     /// they cause, φ, θ and ψ.
     InternalForces = internal_forces(t, q, v, a) -> [wrench; cuts] required
@@ -308,9 +310,10 @@ MotionDerivatives {
     DynamicResidualDerivatives = dynamic_residual_derivatives(t, q, v, a) -> [row; residual_rows] written
         "Derivatives ∂r/∂q (N/m, N, N m) and ∂r/∂v (N s/m, N s, N m s) of the residual r = A a − e − f."
         "Ω_i · (Ω̈_j W + 2 Ω̇_j G + Ω_j × F) − ∂f_i/∂q_j, 2 Ω_i · (Ω̇_j W + Ω_j G) − ∂f_i/∂q̇_j" python(q, v, a; t);
-    /// Row i and column j of each matrix: the change of `f_i` with `q_j`, and with `q̇_j`.
+    /// Row i and column j of each matrix: the change of `f_i` with `q_j`, and with `q̇_j`. f is that of `dynamic_residual`: without the efforts of
+    /// rigid drives, which `forces` has.
     ForceDerivatives = force_derivatives(t, q, v) -> [row; residual_rows] required
-        "Derivatives ∂f/∂q (N/m, N, N m) and ∂f/∂v (N s/m, N s, N m s) of the generalized forces f of `forces`."
+        "Derivatives ∂f/∂q (N/m, N, N m) and ∂f/∂v (N s/m, N s, N m s) of the generalized forces f, without efforts of rigid drives."
         "∂f_i/∂q_j, ∂f_i/∂q̇_j" python(q, v; t);
     /// The runtime multiplies them in loops, see [`rt::derivatives`](crate::rt::derivatives).
     ResidualFactors = residual_factors(q, v, a) -> [row; residual_factors] required

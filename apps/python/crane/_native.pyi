@@ -35,6 +35,10 @@ class Crane:
         """
         (..., columns): the columns of a run at states, and their names; `Crane.columns_at` names them.
         """
+    def _coordinates(self, /, name: str, numbers: ArrayLike) -> NDArray[float64]:
+        """
+        (..., n): coordinates, rates or accelerations, by the names of columns if they have some.
+        """
     def _envelope(self, /, asked: dict[str, Any], progress: Callable[[int, int], Any] | None = None) -> dict[str, Any]:
         """
         Largest loads over the axes: `Crane.envelope` makes an `Envelope` of them.
@@ -257,14 +261,16 @@ class Crane:
         """
     def force_derivatives(self, /, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> NDArray[float64]:
         """
-        (..., 2, n, n): Derivatives ∂f/∂q (N/m, N, N m) and ∂f/∂v (N s/m, N s, N m s) of the generalized forces f of `forces`.
-        Row i and column j of each matrix: the change of `f_i` with `q_j`, and with `q̇_j`.
+        (..., 2, n, n): Derivatives ∂f/∂q (N/m, N, N m) and ∂f/∂v (N s/m, N s, N m s) of the generalized forces f, without efforts of rigid drives.
+        Row i and column j of each matrix: the change of `f_i` with `q_j`, and with `q̇_j`. f is that of `dynamic_residual`: without the efforts of
+        rigid drives, which `forces` has.
         t: s, 0 unless given.
         """
     def forces(self, /, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> NDArray[float64]:
         """
         (..., n): Generalized forces of everything except inertia and gravity, N and N m.
-        The forces of cylinders with a valve depend on their pressures and are not included.
+        The forces of cylinders with a valve depend on their pressures and are not included. Those of rigid drives are, as the efforts with which
+        `A q̈ = e + f` also holds in the rows of the coordinates that they prescribe; in an open chain.
         t: s, 0 unless given.
         """
     def forward_dynamics(self, /, q: ArrayLike, v: ArrayLike, t: ArrayLike | None = None, *, invalid: str = "raise") -> NDArray[float64]:
@@ -305,8 +311,8 @@ class Crane:
         """
     def internal_forces(self, /, q: ArrayLike, v: ArrayLike | None = None, a: ArrayLike | None = None, t: ArrayLike | None = None, *, invalid: str = "raise") -> NDArray[float64]:
         """
-        (..., cuts, 6): force, N, and moment, N m, that the part beyond each cut exerts on the part before it; `Crane.info["cuts"]`
-        lists the cuts. a: accelerations; at rest unless v and a are given.
+        (..., cuts, 6): force, N, and moment, N m, that the part beyond each cut exerts on the part before it, with the forces of cylinders
+        and of joints that close loops; `Crane.info["cuts"]` lists the cuts. a: accelerations; at rest unless v and a are given.
         """
     def inverse_dynamics(self, /, q: ArrayLike, v: ArrayLike, a: ArrayLike, *, invalid: str = "raise") -> NDArray[float64]:
         """

@@ -8,6 +8,8 @@ Every experiment may set live parameters and inputs of its own, which then are n
 the measured quantity: one number, one for every value, or either of these by name. Where it is not given, the fit estimates it from the residuals of each quantity.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
@@ -62,7 +64,7 @@ class Statics:
     reference: Mapping[str, float] | None = None
     name: str = "statics"
 
-    def model_of(self, crane: "Crane", fitted: Sequence[str]) -> Model:
+    def model_of(self, crane: Crane, fitted: Sequence[str]) -> Model:
         """What a crane says to it."""
         return RestModel(self, crane)
 
@@ -86,7 +88,7 @@ class Frequencies:
     inputs: Mapping[str, float] = field(default_factory=dict)
     name: str = "frequencies"
 
-    def model_of(self, crane: "Crane", fitted: Sequence[str]) -> Model:
+    def model_of(self, crane: Crane, fitted: Sequence[str]) -> Model:
         """What a crane says to it."""
         values = self.values
         if not isinstance(values, Mapping):
@@ -125,7 +127,11 @@ class Run:
     output: float | None = None
     name: str = "run"
 
-    def model_of(self, crane: "Crane", fitted: Sequence[str]) -> Model:
+    def __post_init__(self) -> None:
+        # Of a data frame, too.
+        object.__setattr__(self, "columns", {str(name): self.columns[name] for name in self.columns})
+
+    def model_of(self, crane: Crane, fitted: Sequence[str]) -> Model:
         """What a crane says to it."""
         t = real_array("t", self.t)
         if t.ndim != 1 or len(t) < 2 or not np.all(np.diff(t) > 0) or not np.isfinite(t).all() or t[0] < 0:
@@ -137,7 +143,9 @@ class Run:
             measured = real_array(column, given)
             if measured.shape != t.shape:
                 raise ValueError(f"{self.name}: {column} has shape {measured.shape}, and t {t.shape}: give one value for each time")
-            there = np.isfinite(measured)
+            there = ~np.isnan(measured)
+            if not there.any() or np.isinf(measured).any():
+                raise ValueError(f"{self.name}: {column} holds {'infinite values' if there.any() else 'no values'}: write finite numbers, NaN where one is missing")
             noise = noise_of(self, column, len(t))
             series.append(Series(self.name, column, "", t[there], measured[there], None if noise is None else noise[there]))
         check_noise_names(self, list(self.columns))
@@ -151,7 +159,7 @@ class Run:
         given = self.dead_time.values() if isinstance(self.dead_time, Mapping) else [self.dead_time]
         return {name for name in given if isinstance(name, str)}
 
-    def _delay(self, column: str, crane: "Crane", fitted: Sequence[str]) -> float | str:
+    def _delay(self, column: str, crane: Crane, fitted: Sequence[str]) -> float | str:
         """The dead time of a column: a number, or the name of a fitted one."""
         if isinstance(self.dead_time, Mapping):
             for name in self.dead_time:

@@ -1,5 +1,7 @@
 """The result of a fit."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -117,7 +119,7 @@ class Fit(Mapping[str, float]):
     status: str
     cautions: list[str]
     series: tuple[SeriesFit, ...] = field(repr=False)
-    crane: "Crane" = field(repr=False)
+    crane: Crane = field(repr=False)
     statistics: dict[str, int] = field(repr=False)
     wall_time: float = field(repr=False)
 
@@ -217,7 +219,7 @@ class Fit(Mapping[str, float]):
         return [(self.names[i], self.names[j], float(found[i, j])) for i, j in pairs if abs(found[i, j]) > 0.9]
 
     def confidence(
-        self, what: str | Callable[["Crane"], ArrayLike], *, draws: int = 100, seed: int = 0, **parameters: float
+        self, what: str | Callable[[Crane], ArrayLike], *, draws: int = 100, seed: int = 0, **parameters: float
     ) -> Band:
         """What the intervals of the fit mean for another number of the crane: its value with a 95 % interval.
 
@@ -231,6 +233,8 @@ class Fit(Mapping[str, float]):
             return self._propagated(what, parameters)
         if self.unknown.size:
             raise ValueError(f"numbers cannot be drawn: {'; '.join(self.indistinct)}: leave out one of them, or measure something that distinguishes them")
+        if draws < 1:
+            raise ValueError(f"draws={draws}: write how many sets of numbers are drawn, 1 or more")
         rng = np.random.default_rng(seed)
         values, vectors = np.linalg.eigh(self.covariance)
         normal = rng.standard_normal((draws, len(self.names)))

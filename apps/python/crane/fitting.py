@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from .arguments import names_of
 from .coloured import coefficient, score_covariance
 from .experiments import Experiment
 from .fit_problem import Problem, scipy
@@ -56,7 +57,7 @@ def fit(
     else that is wrong with a fit is in `Fit.status` and `Fit.cautions`.
     """
     begin = time.perf_counter()
-    problem = Problem.of(crane, dict.fromkeys(numbers) if not isinstance(numbers, Mapping) else numbers, experiments)
+    problem = Problem.of(crane, numbers if isinstance(numbers, Mapping) else dict.fromkeys(names_of(numbers)), experiments)
     solved = solve(problem, starts_of(problem, starts, seed), evaluations)
     return _result(problem, solved, time.perf_counter() - begin)
 

@@ -1,5 +1,8 @@
 """Frames on links, chosen at the call: poses, Jacobians, velocities, accelerations."""
 
+from __future__ import annotations
+
+import difflib
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -9,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._native import real_array
+from .arguments import names_of
 from .results import Array
 
 if TYPE_CHECKING:
@@ -28,22 +32,25 @@ class Frames:
     the world; so have Jacobians and accelerations.
     """
 
-    def __init__(self, crane: "Crane", frames: "str | Sequence[str] | Mapping[str, Place]") -> None:
-        if isinstance(frames, str):
-            frames = [frames]
+    def __init__(self, crane: Crane, frames: str | Sequence[str] | Mapping[str, Place]) -> None:
         if not isinstance(frames, Mapping):
-            frames = {name: name for name in frames}
+            frames = {name: name for name in names_of(frames)}
         self.names = tuple(frames)
         known = crane.info["frames"]
         named = {frame["name"]: index for index, frame in enumerate(known)}
+        links = list(dict.fromkeys(body["link"] for body in crane.info["bodies"]))
         points = []
         # By index, the corners of frames in the world, (..., 3, 3).
         self._standing: dict[int, Array] = {}
         for index, (name, place) in enumerate(frames.items()):
             link, at = (place, (0.0, 0.0, 0.0)) if isinstance(place, str) else place
+            if link not in named and link not in links:
+                similar = difflib.get_close_matches(str(link), [*named, *links], n=1)
+                meant = f"did you mean {similar[0]}? " if similar else ""
+                raise ValueError(f"frame {name!r}: there is no link or frame {link!r}: {meant}write one of {', '.join([*named, *links])}")
             at = real_array(f"frame {name!r}", at)
-            if at.shape != (3,):
-                raise ValueError(f"frame {name!r}: write (link, [x, y, z]), m in the axes of the link; the place has shape {at.shape}")
+            if at.shape != (3,) or not np.isfinite(at).all():
+                raise ValueError(f"frame {name!r}: write (link, [x, y, z]), finite numbers of m in the axes of the link; the place is {at.tolist()}")
             if link in named and known[named[link]]["link"] is None:
                 pose = crane._frame_poses()[..., named[link], :3, :]
                 self._standing[index] = (at + np.array(_OFFSETS)) @ np.swapaxes(pose[..., :3], -1, -2) + pose[..., None, :, 3]
@@ -140,7 +147,7 @@ class Frames:
         return gravity
 
 
-def _with(crane: "Crane", changes: dict[str, Any]) -> "Crane":
+def _with(crane: Crane, changes: dict[str, Any]) -> Crane:
     """The crane with a change of its spec."""
     return type(crane)(crane.source, text=crane._changed(changes), parameters=crane.parameters, invalid="raise", inputs=crane.inputs)
 

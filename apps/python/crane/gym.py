@@ -17,6 +17,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ._native import real_array
+from .arguments import names_of
 from .loops import closed
 from .model import Crane, load
 from .results import Array
@@ -32,16 +33,17 @@ Reward = Callable[[Results], Array]
 
 def reach(
     targets: Mapping[str, float] | Sequence[str] | str,
-    swing: Mapping[str, float] | Sequence[str] = (),
-    effort: Mapping[str, float] | Sequence[str] = (),
+    swing: Mapping[str, float] | Sequence[str] | str = (),
+    effort: Mapping[str, float] | Sequence[str] | str = (),
 ) -> Reward:
     """The reward for coming to targets and damping the swing there, per step: `−Σ ((x − x_target)/s)² − Σ (w/s)² − Σ (a/s)²`.
 
     targets: results with a target, by name, with the distance s that counts as 1; 1 unless given. swing: results that shall be zero, such as rates of
     a hanging load. effort: results that shall be small, such as actions (`action_slew`).
     """
-    given = ([of] if isinstance(of, str) else of for of in (targets, swing, effort))
-    missed, *small = (dict(of) if isinstance(of, Mapping) else dict.fromkeys(of, 1.0) for of in given)
+    missed, *small = (dict(of) if isinstance(of, Mapping) else dict.fromkeys(names_of(of), 1.0) for of in (targets, swing, effort))
+    for name, scale in (missed | small[0] | small[1]).items():
+        _above_zero(f"the distance of {name!r} that counts as 1", scale)
     # Distances as arrays: NumPy takes longer to read a number than to divide by it.
     scales = [{name: np.array(scale, dtype=float) for name, scale in of.items()} for of in (missed, small[0] | small[1])]
     return _Reach([(name, f"{name}_target", scale) for name, scale in scales[0].items()], list(scales[1].items()))
@@ -66,7 +68,7 @@ class Task:
     """What a crane shall do in an episode: the arguments of `CraneEnv` and `CraneVectorEnv`.
 
     actions: inputs of the spec by name, with their least and greatest values; without bounds, None, those of the spec: plus and minus `max_effort` of
-    the drive whose effort the input is. Actions are scaled: −1 is the least value, 1 the greatest.
+    the drive whose effort the input is. Actions are scaled: −1 is the least value, 1 the greatest, and those beyond are taken for the nearest of both.
     rates: whether actions are rates of the inputs, per second, instead of values; then bounds are those of the rates.
     observations: names of results: coordinates, their rates (`boom_psi_rate`), points (`tip_x`), inputs (`input_slew`) and targets
     (`boom_psi_target`).
@@ -83,7 +85,7 @@ class Task:
 
     actions: Mapping[str, Band | None]
     reward: Reward
-    observations: Sequence[str] = ()
+    observations: Sequence[str] | str = ()
     rates: bool = False
     targets: Mapping[str, Band] = field(default_factory=dict)
     bands: Mapping[str, Band] = field(default_factory=dict)
@@ -107,6 +109,12 @@ class _Episodes:
         self.task, self.count = task, count
         if self.crane.shape:
             raise ValueError("the parameters are arrays: give bands, from which each episode draws its own")
+        if count < 1:
+            raise ValueError(f"num_envs={count}: write how many cranes, 1 or more")
+        if not callable(task.reward):
+            raise TypeError(f"reward={task.reward!r}: give a function of results by name, such as crane.gym.reach('boom_psi')")
+        for what, number in (("dt", task.dt), ("duration", task.duration), *((f"scales[{name!r}]", scale) for name, scale in task.scales.items())):
+            _above_zero(what, number)
         coordinates, points, inputs = self.crane.coordinates, self.crane.info["points"], self.crane.info["inputs"]
         self._inputs = [of["name"] for of in inputs]
         if not task.actions:
@@ -140,7 +148,7 @@ class _Episodes:
         self._places = {name: (array, column) for array, names in arrays.items() for column, name in enumerate(names)}
         for name in (*task.targets, *task.limits):
             _known(name, [of for of in self._places if of not in ("t", *given)], "result")
-        self.names = list(task.observations) or arrays["states"][1:]
+        self.names = names_of(task.observations) or arrays["states"][1:]
         for name in (*self.names, *task.scales):
             _known(name, [of for of in self._places if of != "t"], "observation")
         self._scales = np.array([task.scales.get(name, 1.0) for name in self.names])
@@ -240,6 +248,8 @@ class _Episodes:
         if simulation is None:
             raise gymnasium.error.ResetNeeded("call reset() before step()")
         shares = np.asarray(actions, dtype=float).reshape(self.count, len(self._actions))
+        if np.isnan(shares).any():
+            raise ValueError("actions hold NaN: give numbers from -1 to 1")
         values = self._low + (np.minimum(np.maximum(shares, self._least), self._one) + self._one) * self._half
         inputs = self._given.take(self._acted, axis=1) + values * self._dt if task.rates else values
         rows = simulation._steer(task.dt, self._actions, self._steered, inputs, self._linear)
@@ -259,6 +269,8 @@ class _Episodes:
             why = np.where((why == "") & (margin < task.tipping), "tipping", why)
         rewards = np.empty(self.count)
         rewards[:] = task.reward(results)
+        if np.isnan(rewards).any():
+            raise ValueError("the reward is NaN: give one that is a number in every state")
         terminations, truncations = why.astype(bool), self._steps >= self._most_steps
         if why is not self._fine:
             rewards += task.penalty * terminations
@@ -293,6 +305,11 @@ class _Results(dict[str, Array]):
         arrays = [self._array(of) for of in episodes._told]
         told = (arrays[0] if len(arrays) == 1 else np.concatenate(arrays, axis=1)).take(episodes._columns, axis=1)
         return told[:, episodes._observed] / episodes._scales, told
+
+
+def _above_zero(what: str, number: float) -> None:
+    if not (np.isfinite(number) and number > 0.0):
+        raise ValueError(f"{what} is {number}: write a number above 0")
 
 
 def _known(name: str, of: Any, what: str) -> str:

@@ -1,5 +1,7 @@
 """Joints of a robot under the names and in the order of its file."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -7,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._native import real_array
+from .arguments import by_name
 from .info import NamedJoint
 from .loops import CLOSED, closed
 from .results import Array
@@ -23,10 +26,10 @@ class JointStates(NamedTuple):
     velocity: Array
 
 
-def joint_states(crane: "Crane", q: ArrayLike, v: ArrayLike | None) -> JointStates:
+def joint_states(crane: Crane, q: ArrayLike, v: ArrayLike | None) -> JointStates:
     """As `Crane.joint_states`."""
     joints = _joints(crane)
-    q, v = np.broadcast_arrays(_state(crane, "q", q), np.zeros(crane.n) if v is None else _state(crane, "v", v))
+    q, v = np.broadcast_arrays(crane._coordinates("q", q), np.zeros(crane.n) if v is None else crane._coordinates("v", v))
     found = np.zeros((2, *q.shape[:-1], len(joints)))
     for index, joint in enumerate(joints):
         found[0, ..., index] = joint["at"]
@@ -36,11 +39,12 @@ def joint_states(crane: "Crane", q: ArrayLike, v: ArrayLike | None) -> JointStat
     return JointStates(tuple(joint["name"] for joint in joints), found[0], found[1])
 
 
-def coordinates_of(crane: "Crane", positions: Mapping[str, ArrayLike], q: ArrayLike | None) -> Array:
+def coordinates_of(crane: Crane, positions: Mapping[str, ArrayLike], q: ArrayLike | None) -> Array:
     """As `Crane.coordinates_of`."""
     joints = {joint["name"]: joint for joint in _joints(crane)}
+    positions = by_name("positions", positions, f'{{"{next(iter(joints), "joint")}": 0.1}}')
     numbers = {name: real_array(f"joint {name!r}", position) for name, position in positions.items()}
-    start = crane.guess if q is None else _state(crane, "q", q)
+    start = crane.guess if q is None else crane._coordinates("q", q)
     found = np.array(np.broadcast_to(start, (*np.broadcast_shapes(start.shape[:-1], *(given.shape for given in numbers.values())), crane.n)))
     given = []
     for name, position in numbers.items():
@@ -58,13 +62,6 @@ def coordinates_of(crane: "Crane", positions: Mapping[str, ArrayLike], q: ArrayL
     return found
 
 
-def _state(crane: "Crane", name: str, given: ArrayLike) -> Array:
-    numbers = real_array(name, given)
-    if numbers.shape[-1:] != (crane.n,):
-        raise ValueError(f"{name} needs {crane.n} numbers in its last axis, one per coordinate: its shape is {numbers.shape}")
-    return numbers
-
-
-def _joints(crane: "Crane") -> list[NamedJoint]:
+def _joints(crane: Crane) -> list[NamedJoint]:
     """Those that the spec names, or its coordinates."""
     return crane.info["joints"] or [{"name": name, "coordinate": name, "at": 0.0} for name in crane.coordinates]

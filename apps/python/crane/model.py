@@ -1,5 +1,7 @@
 """A crane: a spec with live parameters."""
 
+from __future__ import annotations
+
 import difflib
 import html
 import itertools
@@ -14,7 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _native, state_space
 from ._native import real_array
-from .closed import Closed
+from .arguments import by_name, names_of
+from .closed import Closed, Fixed
 from .frames import Frames, Place
 from .joints import JointStates, coordinates_of, joint_states
 from .mistakes import NoEquilibrium
@@ -55,7 +58,7 @@ def load(
     invalid: str = "raise",
     inputs: Mapping[str, float | None] | None = None,
     **parameters: ArrayLike,
-) -> "Crane":
+) -> Crane:
     """Loads a crane: a shipped one by its name (`crane.shipped()` lists them), or that of a YAML file, or a robot of a file in URDF or
     MJCF, `.urdf` or `.xml`, as `crane import` converts it: `Crane.notes` lists what is left out.
 
@@ -74,7 +77,7 @@ def load(
     return Crane(source, text=text, parameters=parameters, invalid=invalid, inputs=None if inputs is None else dict(inputs))
 
 
-def from_urdf(text: str, /, *, name: str = "robot.urdf", fix: Sequence[str] = (), repair: bool = False) -> "Crane":
+def from_urdf(text: str, /, *, name: str = "robot.urdf", fix: str | Sequence[str] = (), repair: bool = False) -> Crane:
     """A crane from the text of a robot in URDF, as `crane import` converts it; `Crane.notes` lists what is left out.
 
     name: that of the file in messages.
@@ -83,15 +86,15 @@ def from_urdf(text: str, /, *, name: str = "robot.urdf", fix: Sequence[str] = ()
 
     Raises SpecError, which prints every mistake with its place and remedy.
     """
-    return Crane(f"{name}.yaml", text=_native.import_robot(name, text, list(fix), repair))
+    return Crane(f"{name}.yaml", text=_native.import_robot(name, text, names_of(fix), repair))
 
 
-def from_mjcf(text: str, /, *, name: str = "robot.xml", fix: Sequence[str] = (), repair: bool = False) -> "Crane":
+def from_mjcf(text: str, /, *, name: str = "robot.xml", fix: str | Sequence[str] = (), repair: bool = False) -> Crane:
     """A crane from the text of a robot in MJCF, without `<include>`; otherwise as `from_urdf`."""
     return from_urdf(text, name=name, fix=fix, repair=repair)
 
 
-def _load_again(source: str, text: str, parameters: dict[str, Any], inputs: dict[str, float]) -> "Crane":
+def _load_again(source: str, text: str, parameters: dict[str, Any], inputs: dict[str, float]) -> Crane:
     """A crane from a pickle, without repeating its warnings."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -242,9 +245,14 @@ class Crane(Closed, _native.Crane):
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """Live parameters: one number each, or an array over the leading axes."""
+        """Live parameters: one number each, or an array over the leading axes. `replace` sets them, in another crane."""
         names = [parameter["name"] for parameter in self.info["parameters"]]
-        return {name: self._parameter_rows(index) for index, name in enumerate(names)}
+        return Fixed({name: self._parameter_rows(index) for index, name in enumerate(names)})
+
+    @property
+    def inputs(self) -> dict[str, float]:
+        """Inputs that are set, by name. `replace` sets them, in another crane."""
+        return Fixed(super().inputs)
 
     def strength(
         self,
@@ -296,6 +304,9 @@ class Crane(Closed, _native.Crane):
     ) -> Linearisation:
         """Coefficients of small motions: A, K, D, each (..., n, n), about poses at rest at t = 0, or about motions if v, a or t is given.
 
+        At rest K is `tangent_stiffness`. Coordinates that rigid drives prescribe do not move: in their rows and columns all three are zero, but for 1 on the
+        diagonals of A and K, so that A is not `mass_matrix` there.
+
         About a motion K and D contain centrifugal and gyroscopic terms: `K = ∂(A a − e − f)/∂q`, `D = −∂(e + f)/∂v`. v and a are
         zero unless given: with a = 0 about a motion at constant rates, which `steady_motion` finds.
         """
@@ -313,8 +324,8 @@ class Crane(Closed, _native.Crane):
         t: ArrayLike | None = None,
         x: ArrayLike | None = None,
         *,
-        inputs: Sequence[str] | None = None,
-        outputs: Sequence[str] | None = None,
+        inputs: str | Sequence[str] | None = None,
+        outputs: str | Sequence[str] | None = None,
         valves: str = "shut",
         steady: bool = False,
         invalid: str = "raise",
@@ -395,17 +406,12 @@ class Crane(Closed, _native.Crane):
         self._product_shape(function)
         numbers = self._product_numbers()
         names = [name for name, _ in numbers]
-        if not isinstance(changes, Mapping):
-            raise TypeError(f'changes are arrays or numbers by name, as {{"q": dq}}, not {type(changes).__name__}')
-        for name in changes:
+        for name in by_name("changes", changes, '{"q": dq}'):
             if name not in names:
                 similar = difflib.get_close_matches(str(name).split(".")[-1], names + [known.split(".")[-1] for known in names], n=1)
                 meant = next((f"did you mean {known}? " for known in names for close in similar if known.split(".")[-1] == close), "")
                 raise KeyError(f"nothing is called {name!r}: {meant}write one of {', '.join(names)}")
-        given = {name: real_array(name, change) for name, change in changes.items()}
-        for name in STATE:
-            if name in given and given[name].shape[-1:] != (self.n,):
-                raise ValueError(f"the change of {name} has shape {given[name].shape}: its last axis has the {self.n} coordinates of {self.name}")
+        given = {name: (self._coordinates if name in STATE else real_array)(f"the change of {name}", change) for name, change in changes.items()}
         given = {name: change if name in STATE else change[..., None] for name, change in given.items()}
         try:
             shape = np.broadcast_shapes(*(change.shape[:-1] for change in given.values()))
@@ -422,7 +428,7 @@ class Crane(Closed, _native.Crane):
         x: ArrayLike | None = None,
         t: ArrayLike | None = None,
         *,
-        names: Sequence[str] | None = None,
+        names: str | Sequence[str] | None = None,
         invalid: str = "raise",
     ) -> dict[str, Array]:
         """What the columns of a run are at states q, v, x and times t, s, 0 unless given: forces, pressures, powers, accelerations, by name.
@@ -431,10 +437,11 @@ class Crane(Closed, _native.Crane):
         names: of columns; all unless given.
         """
         numbers, known = self._columns_at(q, v, x, t, invalid=invalid)
-        for name in names or ():
+        asked = known if names is None else names_of(names)
+        for name in asked:
             if name not in known:
                 raise ValueError(f"there is no column {name!r}: write one of {', '.join(known)}")
-        return {name: numbers[..., known.index(name)] for name in (known if names is None else names)}
+        return {name: numbers[..., known.index(name)] for name in asked}
 
     def margins(
         self,
@@ -581,7 +588,7 @@ class Crane(Closed, _native.Crane):
 
         Raises NoEquilibrium if a row has no stable one; with invalid="nan" it warns, and `status` says why.
         """
-        held = None if hold is None else list(hold.items())
+        held = None if hold is None else list(by_name("hold", hold, '{"boom": "20 deg"}').items())
         found = self._equilibria(t, held, guess, tolerance, iterations, load_steps, invalid)
         shape = tuple(found.pop("shape"))
         words = {key: _shaped(found.pop(key), shape) for key in ("status", "message", "steps")}
@@ -597,7 +604,7 @@ class Crane(Closed, _native.Crane):
         utilisation: float | None = 1.0,
         efforts: Mapping[str, float] | None = None,
         deflections: Mapping[str, float] | None = None,
-        without: Sequence[str] = (),
+        without: str | Sequence[str] = (),
         lift_off: bool = False,
         slack_ropes: bool = False,
         load_factor: float = 1.0,
@@ -620,6 +627,7 @@ class Crane(Closed, _native.Crane):
         point: the one whose radius and height are given; the only one, or the origin of the last link unless given.
         `progress(done, all)` is called from time to time.
         """
+        ranges = by_name("ranges", ranges, '{"boom": np.radians([0, 30, 60])}')
         axes = {name: np.atleast_1d(real_array(f"ranges[{name!r}]", values)) for name, values in ranges.items()}
         for name, values in axes.items():
             if values.ndim != 1:
@@ -632,7 +640,7 @@ class Crane(Closed, _native.Crane):
             "utilisation": utilisation,
             "efforts": list((efforts or {}).items()),
             "deflections": list((deflections or {}).items()),
-            "without": list(without),
+            "without": names_of(without),
             "lift_off": lift_off,
             "slack_ropes": slack_ropes,
             "load_factor": load_factor,
@@ -645,7 +653,7 @@ class Crane(Closed, _native.Crane):
 
     def modes(self, q: ArrayLike | None = None, *, invalid: str = "raise") -> Modes:
         """Undamped and damped modes about poses at rest; about the static equilibrium unless poses are given."""
-        q = self.statics(invalid=invalid).q if q is None else real_array("q", q)
+        q = self.statics(invalid=invalid).q if q is None else self._coordinates("q", q)
         found = self._modes(q, invalid)
         lists = [found["dominating"], found["damped_dominating"]]
         if not found["shape"]:
@@ -665,8 +673,9 @@ class Crane(Closed, _native.Crane):
         Feet, ropes and stops act as they do at rest, and what governs keeps governing: a derivative ends where one of these changes.
         Raises NoEquilibrium if a row has no stable one; with invalid="nan" its numbers are NaN.
         """
-        numbers = [numbers] if isinstance(numbers, str) else numbers
-        names = list(numbers) if numbers is not None else [parameter["name"] for parameter in self.info["parameters"]]
+        names = [parameter["name"] for parameter in self.info["parameters"]] if numbers is None else names_of(numbers)
+        if frequencies < 0:
+            raise ValueError(f"frequencies={frequencies}: write how many of the lowest ones, 0 or more")
         if not names:
             raise ValueError(
                 f'{self.name} has no live parameters: name numbers by their places, such as "links.boom.mass", or define `parameters:`'
@@ -714,8 +723,8 @@ class Crane(Closed, _native.Crane):
         verify: bool = True,
         bend_limit: float | None = None,
         inputs: dict[str, float | None] | None = None,
-        gradients: Sequence[str] | None = None,
-        adjoint: Sequence[str] | Mapping[str, str] | None = None,
+        gradients: str | Sequence[str] | None = None,
+        adjoint: str | Sequence[str] | Mapping[str, str] | None = None,
     ) -> Run:
         """A run from the static equilibrium at rest, or from pose q and rates v.
 
@@ -735,7 +744,7 @@ class Crane(Closed, _native.Crane):
         """
         if isinstance(adjoint, Mapping):
             adjoint = [f"{column}.{of}" for column, of in adjoint.items()]
-        names, asked = (None if given is None else [given] if isinstance(given, str) else list(given) for given in (gradients, adjoint))
+        names, asked = (None if given is None else names_of(given) for given in (gradients, adjoint))
         if not all(isinstance(name, str) for name in [*(names or ()), *(asked or ())]):
             raise TypeError('gradients and adjoint are names: write "payload", or "boom_psi_drive_torque.peak"')
         if names is not None or asked is not None:
@@ -745,6 +754,8 @@ class Crane(Closed, _native.Crane):
             method = "rosw4"
             if self.shape:
                 raise ValueError("the parameters are arrays, and runs of many cranes have no derivatives: run the cranes one by one")
+        if not isinstance(verify, (bool, np.bool_)):
+            raise TypeError(f"verify={verify!r}: write True or False")
         timing = _timing(method, duration, output, tolerance, step, force)
         limits = {} if bend_limit is None else {"bend": bend_limit}
         crane = self.replace(inputs=inputs) if inputs else self
@@ -815,6 +826,9 @@ def _timing(
     """Settings of a run, for the native part."""
     if isinstance(step, str) and step != "auto":
         raise ValueError(f'step={step!r}: write a number of seconds, or "auto"')
+    for name, number, unit in (("duration", duration, "s"), ("output", output, "s"), ("tolerance", tolerance, "m and rad")):
+        if number is not None and (np.ndim(number) or not np.issubdtype(np.asarray(number).dtype, np.number)):
+            raise TypeError(f"{name}={number!r}: write one number, in {unit}")
     return {
         "method": method,
         "duration": duration,

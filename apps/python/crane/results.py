@@ -1,6 +1,7 @@
 """Results of the functions of a crane."""
 
 import html
+import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
+from .mistakes import InvalidRowWarning
 from .notebook import embed
 
 if TYPE_CHECKING:
@@ -304,6 +306,16 @@ class Strength:
     stabilising: Array
     overturning: Array
     governing_line: NDArray[np.int64]
+
+    def __getattribute__(self, name: str) -> Any:
+        value = object.__getattribute__(self, name)
+        if name == "utilisation" and value.size and np.isnan(value).all():
+            warnings.warn(
+                "utilisation is NaN in all sections: no beam has an allowable stress; write `yield_stress` and `safety_factor` of its material in the spec",
+                InvalidRowWarning,
+                stacklevel=2,
+            )
+        return value
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,7 @@
 """Simulations that are stepped from outside, for controllers and learning."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -23,8 +25,8 @@ class State:
 
     t: s. q, v: (n), m and rad, m/s and rad/s. work, dissipated, load_work: J since the start. parameters: live parameters.
     inputs: those that are set. x: states of the oil of cylinders with a valve (pressures on the sides of piston and rod, Pa, and opening of
-    each, then the pump's pressure, Pa), then deflections of bristles in joints that stick (rad or m); empty before the first step,
-    which begins with those that hold the pose. marks: what the events of the spec have done, by name: the time of each, s; 0 if it is still
+    each, then the pump's pressure, Pa), then deflections of bristles in joints that stick (rad or m); `restore` takes those that hold the
+    pose for an empty array. marks: what the events of the spec have done, by name: the time of each, s; 0 if it is still
     to come, NaN if its condition has to cease before, -1 if its time was before the start; empty before the first step.
     """
 
@@ -65,7 +67,7 @@ class Simulation(Closed):
 
     def __init__(
         self,
-        crane: "Crane",
+        crane: Crane,
         timing: dict[str, Any],
         *,
         t: float = 0.0,
@@ -77,8 +79,8 @@ class Simulation(Closed):
         method = timing["method"] or ("rk4" if timing["step"] else None)
         self._timing = {**timing, "method": method}
         self._crane = crane
-        q = crane.statics(t=t).q if q is None else q
-        v = np.zeros_like(q, dtype=float) if v is None else v
+        q = crane.statics(t=t).q if q is None else crane._coordinates("q", q)
+        v = np.zeros_like(q) if v is None else crane._coordinates("v", v)
         self._state = _fixed(State(float(real_array("t", t)), q, v, parameters=crane.parameters, inputs=crane.inputs))
         self._counted = dict.fromkeys(("steps", "rejections", "evaluations", "factorisations"), 0)
         # The running method, and the energies at its beginning.
@@ -96,7 +98,7 @@ class Simulation(Closed):
             self._motion = self._crane._recalled(self._timing, True, [self._motion])
 
     @property
-    def crane(self) -> "Crane":
+    def crane(self) -> Crane:
         """The crane with its present parameters and inputs."""
         if self._crane.inputs != self._state.inputs:
             self._crane = self._with_inputs(self._crane, self._state.inputs)
@@ -161,9 +163,7 @@ class Simulation(Closed):
             if self._motion is None or not all(value is not None and self._motion.can_set(name) for name, value in inputs.items()):
                 self._release(inputs, values, linear)
         if self._motion is None:
-            state = self._state
-            self._motion = self.crane._motions(self._timing, True, state.t, state.q, state.v, state.x, marks=list(state.marks.values()) or None)
-            self._begin = state
+            self._motion, self._begin = self._motion_from_here(), self._state
         try:
             self._motion.advance(dt, 1, _as_set(inputs or {}, self._motion), linear)
             self._motion.check()
@@ -187,7 +187,12 @@ class Simulation(Closed):
         )
         return self._state
 
-    def _present_parameters(self, motion: "Motions") -> dict[str, float]:
+    def _motion_from_here(self) -> Motions:
+        """A motion with a new history, from the present state."""
+        state = self._state
+        return self.crane._motions(self._timing, True, state.t, state.q, state.v, state.x, marks=list(state.marks.values()) or None)
+
+    def _present_parameters(self, motion: Motions) -> dict[str, float]:
         """The live parameters, which events may have set; so has the crane."""
         before = self._state.parameters
         now = dict(zip(before, motion.parameters()[0].tolist(), strict=True))
@@ -213,11 +218,11 @@ class Simulation(Closed):
             changed = {name: values[name] for name in released if name in values}
             self._crane, self._state = crane, replace(self._state, inputs={**kept, **changed})
 
-    def _with_inputs(self, crane: "Crane", inputs: dict[str, float]) -> "Crane":
+    def _with_inputs(self, crane: Crane, inputs: dict[str, float]) -> Crane:
         """A crane with these inputs only."""
         return crane.replace(inputs={**dict.fromkeys(crane.inputs), **inputs})
 
-    def _change(self, crane: "Crane") -> None:
+    def _change(self, crane: Crane) -> None:
         """Takes another crane from now on, unless it has the same parameters."""
         if crane.parameters != self._state.parameters:
             self._forget()
@@ -231,10 +236,15 @@ class Simulation(Closed):
 
     def save(self) -> State:
         """The current state."""
+        if self._motion is None and not len(self._state.x):
+            # Those that hold the pose, with which the first step begins.
+            return replace(self._state, x=self._motion_from_here().states()[3][0])
         return self._state
 
     def restore(self, state: State) -> None:
         """Goes back to a state that was saved, of this simulation or of another one of the same crane."""
+        if not isinstance(state, State):
+            raise TypeError(f"restore takes a state that `save` or `step` has returned, not {type(state).__name__}")
         n = self.crane.n
         for name, numbers in (("q", state.q), ("v", state.v)):
             if np.shape(numbers) != (n,):
@@ -244,7 +254,7 @@ class Simulation(Closed):
         self._crane, self._state = crane, _fixed(state)
 
 
-def _as_set(inputs: dict[str, float | None], motion: "Motions") -> dict[str, float | None]:
+def _as_set(inputs: dict[str, float | None], motion: Motions) -> dict[str, float | None]:
     """Inputs without those that follow motions of the spec: None is what these do already."""
     return {name: value for name, value in inputs.items() if value is not None or motion.can_set(name)}
 

@@ -1,5 +1,7 @@
 """Linear models about a state, with inputs and outputs by their names, and margins of loops around them."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -9,6 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
+from ._native import real_array
+from .arguments import names_of
 from .results import Array
 
 if TYPE_CHECKING:
@@ -55,14 +59,17 @@ class StateSpace:
         """(..., frequencies, outputs, inputs): `C (iω − A)⁻¹ B + D` at frequencies in Hz: amplitude and phase of each output per unit of each input.
 
         Of a sampled model `C (exp(iω interval) − A)⁻¹ B + D`."""
-        turning = 2j * np.pi * np.atleast_1d(np.asarray(frequencies, dtype=float))
+        frequencies = np.atleast_1d(real_array("frequencies", frequencies))
+        if not np.isfinite(frequencies).all():
+            raise ValueError(f"frequencies={frequencies}: write finite numbers, in Hz")
+        turning = 2j * np.pi * frequencies
         if self.interval is not None:
             turning = np.exp(turning * self.interval)
         unit = np.eye(self.A.shape[-1])
         A, B, C, D = (matrix[..., None, :, :] for matrix in self)
         return C @ np.linalg.solve(turning[:, None, None] * unit - A, B.astype(complex)) + D
 
-    def sampled(self, interval: float) -> "StateSpace":
+    def sampled(self, interval: float) -> StateSpace:
         """The model from sample to sample, `interval` s apart, with inputs that are constant between them (zero-order hold)."""
         if self.interval is not None:
             raise ValueError("the model is sampled already")
@@ -142,24 +149,24 @@ class Margins:
 
 
 def about(
-    crane: "Crane",
+    crane: Crane,
     state: tuple[ArrayLike, ArrayLike | None, ArrayLike | None, ArrayLike | None],
-    inputs: Sequence[str] | None,
-    outputs: Sequence[str] | None,
+    inputs: str | Sequence[str] | None,
+    outputs: str | Sequence[str] | None,
     invalid: str,
     *,
     valves: str = "shut",
     steady: bool = False,
 ) -> StateSpace:
     """The linear model of a crane about a state q, v, t, x: see `Crane.state_space`."""
-    lists = (None if names is None else list(names) for names in (inputs, outputs))
+    lists = (None if names is None else names_of(names) for names in (inputs, outputs))
     found = crane._state_space(*state, valves=valves, steady=steady, **dict(zip(("inputs", "outputs"), lists, strict=True)), invalid=invalid)
     names = ("states", "inputs", "outputs", "state_units", "input_units", "output_units")
     verdicts = {"stable": found["stable"] == 1.0, "drift": found["drift"], "decay": found["decay"]}
     return StateSpace(*(found[name] for name in "ABCD"), *(tuple(found[name]) for name in names), **verdicts)
 
 
-def margins(crane: "Crane", model: StateSpace, powers: list[int], numbers: list[float], invalid: str) -> Margins:
+def margins(crane: Crane, model: StateSpace, powers: list[int], numbers: list[float], invalid: str) -> Margins:
     """The margins of a loop around a model with one output: see `Crane.margins`."""
     axes = model.A.shape[:-2]
     A, B, C, D = (np.ascontiguousarray(matrix.reshape(-1, *matrix.shape[len(axes) :])) for matrix in model)

@@ -10,6 +10,8 @@ study. The same study in the same folder continues where it ended: finished part
 `engine` the parts run on its workers; if one dies, another repeats the part that it was computing.
 """
 
+from __future__ import annotations
+
 import hashlib
 import itertools
 import json
@@ -83,6 +85,9 @@ def sobol(count: int, *, seed: int, **ranges: tuple[float, float]) -> Cases:
 
 
 def _scaled(samples: np.ndarray, ranges: dict[str, tuple[float, float]]) -> Cases:
+    for name, (low, high) in ranges.items():
+        if not (np.isfinite([low, high]).all() and low < high):
+            raise ValueError(f"{name}=({low}, {high}): write (minimum, maximum), finite numbers that increase")
     least, greatest = np.array(list(ranges.values())).T
     return {name: column for name, column in zip(ranges, (least + samples * (greatest - least)).T, strict=True)}
 

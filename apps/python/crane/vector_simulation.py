@@ -1,5 +1,7 @@
 """Many cranes of one spec in motion, stepped together on all threads."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -49,7 +51,7 @@ class VectorSimulation(Closed):
 
     def __init__(
         self,
-        crane: "Crane",
+        crane: Crane,
         timing: dict[str, Any],
         count: int | None = None,
         *,
@@ -58,6 +60,8 @@ class VectorSimulation(Closed):
         v: ArrayLike | None = None,
         inputs: Mapping[str, ArrayLike] | None = None,
     ) -> None:
+        if count is not None and (isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1):
+            raise ValueError(f"count={count!r}: write how many cranes, 1 or more")
         self._timing = {**timing, "method": timing["method"] or ("rk4" if timing["step"] else None)}
         given = {name: real_array(f"inputs[{name!r}]", value) for name, value in {**crane.inputs, **(inputs or {})}.items()}
         states = [np.shape(state)[:-1] for state in (q, v) if state is not None]
@@ -73,7 +77,7 @@ class VectorSimulation(Closed):
         self._motions = self._begin(np.arange(self._count), t, q, v)
         self._read()
 
-    def _begin(self, rows: Array, t: float, q: ArrayLike | None, v: ArrayLike | None) -> "Motions":
+    def _begin(self, rows: Array, t: float, q: ArrayLike | None, v: ArrayLike | None) -> Motions:
         """Motions of some rows, with their parameters and inputs; from their own equilibria unless poses are given."""
         crane = self._crane_of(rows)
         inputs = {name: value[rows] for name, value in self._inputs.items() if not np.isnan(value).any()}
@@ -82,12 +86,13 @@ class VectorSimulation(Closed):
             if not np.isnan(value).all():
                 raise ValueError(f"inputs[{name!r}]: it follows a motion of the spec in some rows; set it in all, or in none")
         q = crane.statics(t=t).q if q is None and t != 0.0 else q
-        states = [None if state is None else np.broadcast_to(real_array("a state", state), (len(rows), crane.n)) for state in (q, v)]
+        given = (None if state is None else crane._coordinates(name, state) for name, state in (("q", q), ("v", v)))
+        states = [None if state is None else np.broadcast_to(state, (len(rows), crane.n)) for state in given]
         if not inputs and not crane.shape and q is None and v is None:
             states[0] = np.broadcast_to(crane.statics(t=t).q, (len(rows), crane.n))
         return crane._motions(self._timing, False, float(t), *states, [], inputs or None)
 
-    def _crane_of(self, rows: Array) -> "Crane":
+    def _crane_of(self, rows: Array) -> Crane:
         """Cranes with the parameters of some rows."""
         return self._base.replace(**{name: value[rows] for name, value in self._parameters.items()})
 
@@ -110,7 +115,7 @@ class VectorSimulation(Closed):
         return self._count
 
     @property
-    def crane(self) -> "Crane":
+    def crane(self) -> Crane:
         """The cranes, with their present parameters as arrays."""
         return self._base.replace(**self.parameters)
 

@@ -6,7 +6,7 @@ use numpy::{PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyU
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyFloat, PyInt, PyString};
+use pyo3::types::{IntoPyDict, PyFloat, PyInt, PyList, PyString};
 
 use crane_codegen::units::number_in;
 use crane_model::Description;
@@ -48,7 +48,8 @@ impl Argument {
 
     /// As many numbers per row as the crane has coordinates: `q`, `v`, `a`.
     pub fn coordinates(name: &str, object: &Bound<'_, PyAny>, description: &Description) -> PyResult<Self> {
-        let (mut shape, numbers) = read_numbers(name, object)?;
+        let named = by_name(name, object, description)?;
+        let (mut shape, numbers) = read_numbers(name, named.as_ref().unwrap_or(object))?;
         let width = description.coordinates.len();
         let last = shape.pop();
         if last != Some(width) {
@@ -105,6 +106,42 @@ impl Argument {
         Cow::Owned(
             length.flat_map(|index| &self.numbers[index * self.width..(index + 1) * self.width]).copied().collect(),
         )
+    }
+}
+
+/// Columns of a data frame, or entries of a series, in the order of the coordinates after which they are called; those of v may also have the
+/// names of rates. Nothing for what has no names.
+fn by_name<'py>(
+    name: &str,
+    object: &Bound<'py, PyAny>,
+    description: &Description,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let py = object.py();
+    if object.is_exact_instance_of::<PyUntypedArray>() || object.is_instance_of::<PyList>() {
+        return Ok(None);
+    }
+    let labels = if object.hasattr(intern!(py, "columns"))? {
+        object.getattr(intern!(py, "columns"))?
+    } else if object.hasattr(intern!(py, "iloc"))? {
+        object.getattr(intern!(py, "index"))?
+    } else {
+        return Ok(None);
+    };
+    let labels = labels.try_iter()?.map(|label| label?.extract::<String>());
+    let Ok(labels) = labels.collect::<PyResult<Vec<String>>>() else { return Ok(None) };
+    let coordinates = || description.coordinates.iter().map(|coordinate| &*coordinate.name);
+    let called = |label: &str, coordinate: &str| {
+        label == coordinate || (name == "v" && label.strip_suffix("_rate") == Some(coordinate))
+    };
+    let found = coordinates().map(|coordinate| labels.iter().find(|label| called(label, coordinate)));
+    match found.collect::<Option<Vec<&String>>>() {
+        Some(found) if found.len() == labels.len() => object.get_item(found).map(Some),
+        _ => Err(PyValueError::new_err(format!(
+            "{name} has columns that are not called after the coordinates of {}: write frame[c.coordinates], or frame.to_numpy() if they are in \
+             the order of its coordinates: {}",
+            description.name,
+            coordinates().collect::<Vec<_>>().join(", ")
+        ))),
     }
 }
 
@@ -167,6 +204,8 @@ pub struct Joined<'a> {
     pub shape: Vec<usize>,
     /// Each argument, with that many rows, or with one for all.
     pub arguments: Vec<Cow<'a, [f64]>>,
+    /// Its name, and how many numbers a row of it has.
+    pub names: Vec<(String, usize)>,
 }
 
 impl<'a> Joined<'a> {
@@ -192,8 +231,9 @@ impl<'a> Joined<'a> {
                 }
             }
         }
+        let names = arguments.iter().map(|(name, argument)| ((*name).to_owned(), argument.width)).collect();
         let arguments = arguments.iter().map(|(_, argument)| argument.over(&shape)).collect();
-        Ok(Self { shape, arguments })
+        Ok(Self { shape, arguments, names })
     }
 
     /// How many rows there are.
@@ -212,6 +252,12 @@ impl<'a> Joined<'a> {
 /// An array of zeros with leading axes and those of a row.
 pub fn zeros<'py>(py: Python<'py>, shape: &[usize], of_row: &[usize]) -> Bound<'py, PyArrayDyn<f64>> {
     PyArrayDyn::zeros(py, [shape, of_row].concat(), false)
+}
+
+/// An array that cannot be changed: a change would not change a crane.
+pub fn fixed(numbers: Bound<'_, PyArrayDyn<f64>>) -> Numbers<'_> {
+    numbers.readwrite().make_nonwriteable();
+    numbers.into()
 }
 
 /// Numbers as an array with leading axes and those of a row.

@@ -25,9 +25,9 @@ use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyRuntimeError, PyTypeErr
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
 
-use crate::arrays::{Argument, Joined, array};
+use crate::arrays::{Argument, Joined, array, fixed};
 use crate::mistakes::{self, BadRow, Invalid, ParameterError, spec_error, warn, warn_of_rows, warn_of_spec};
-use crate::types::{Array, Dict, Numbers, hints};
+use crate::types::{Array, ArrayLike, Dict, Numbers, hints};
 
 /// A crane with its parameters: native part of `crane.Crane`.
 #[pyclass(frozen, subclass, module = "crane._native")]
@@ -340,7 +340,7 @@ impl Crane {
         let values: Vec<f64> = values.collect();
         match (values.as_slice(), self.parameters.shape.as_slice()) {
             ([value], []) => Ok(value.into_pyobject(py)?.into_any()),
-            _ => Ok(array(py, values, &self.parameters.shape, &[])?.into_any()),
+            _ => Ok(fixed(array(py, values, &self.parameters.shape, &[])?).into_pyobject(py)?.into_any()),
         }
     }
 
@@ -360,6 +360,13 @@ impl Crane {
         array(py, poses.concat(), &self.parameters.shape, &[chain.frames.len(), 4, 4]).map(Numbers::from)
     }
 
+    /// (..., n): coordinates, rates or accelerations, by the names of columns if they have some.
+    #[pyo3(name = "_coordinates")]
+    fn coordinate_rows<'py>(&self, py: Python<'py>, name: &str, numbers: ArrayLike<'py>) -> Array<'py> {
+        let rows = Argument::coordinates(name, &numbers, self.live.description())?;
+        array(py, rows.numbers, &rows.shape, &[self.live.size()]).map(Numbers::from)
+    }
+
     /// (..., n): where statics begins, m and rad; NaN for parameters that break a rule.
     #[getter]
     fn guess<'py>(&self, py: Python<'py>) -> Array<'py> {
@@ -370,7 +377,7 @@ impl Crane {
             }
             (&*self.of_row(row) as &dyn DynCrane).guess()
         })?;
-        array(py, guesses.concat(), &self.parameters.shape, &[size]).map(Numbers::from)
+        array(py, guesses.concat(), &self.parameters.shape, &[size]).map(fixed)
     }
 }
 

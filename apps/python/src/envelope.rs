@@ -150,13 +150,13 @@ impl ChartRequest {
             let [least, greatest] = loads;
             return Err(PyValueError::new_err(format!("greatest_load={greatest}: write a number above {least}")));
         }
-        for (name, value, is_allowed) in [
-            ("tipping", self.tipping, (|margin| (0.0..1.0).contains(&margin)) as fn(f64) -> bool),
-            ("utilisation", self.utilisation, |part| part > 0.0 && part.is_finite()),
-            ("load_factor", Some(self.load_factor), |factor| factor > 0.0 && factor.is_finite()),
+        for (name, value, range, is_allowed) in [
+            ("tipping", self.tipping, "from 0 to below 1", (|margin| (0.0..1.0).contains(&margin)) as fn(f64) -> bool),
+            ("utilisation", self.utilisation, "above 0", |part| part > 0.0 && part.is_finite()),
+            ("load_factor", Some(self.load_factor), "above 0", |factor| factor > 0.0 && factor.is_finite()),
         ] {
             if let Some(wrong) = value.filter(|value| !is_allowed(*value)) {
-                return Err(PyValueError::new_err(format!("{name}={wrong} is out of range")));
+                return Err(PyValueError::new_err(format!("{name}={wrong}: write a number {range}")));
             }
         }
         let mut of_parts = PartLimit::DEFAULT.to_vec();

@@ -144,7 +144,7 @@ impl Crane {
         let first_held = arguments.len();
         arguments.extend(held.iter().map(|(_, positions)| ("hold", positions)));
         let joined = Joined::new(&arguments)?;
-        let wrong = self.bad_rows(&joined, ["t", "guess", "v", "a"], invalid)?;
+        let wrong = self.bad_rows(&joined, invalid)?;
         let refused = |row: usize| wrong.iter().find(|bad| bad.row == row);
         let n = self.live.size();
         let found = map_rows(py, joined.rows(), |row, _| {

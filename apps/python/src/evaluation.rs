@@ -3,6 +3,7 @@
 use crane_live::rows::{BatchEvaluation, ParameterRows};
 use crane_live::{FunctionId, Refusal};
 use crane_model::dyn_crane::{DynCrane, Functions};
+use crane_model::force_states;
 use crane_model::rt::lanes::f64x8;
 use numpy::PyArrayMethods;
 use pyo3::exceptions::PyValueError;
@@ -16,8 +17,8 @@ use crate::types::{Array, ArrayLike, Given, Numbers};
 
 /// Rows that a thread takes at a time: some tens of microseconds of work.
 const PIECE: usize = 64;
-/// Names of the arguments of a state.
-pub const STATE: [&str; 4] = ["t", "q", "v", "a"];
+/// Place of the parameters among arguments: behind t, q, v, a.
+const PARAMETERS: usize = 4;
 
 /// A state as it was given.
 #[derive(Default)]
@@ -69,17 +70,20 @@ impl Crane {
         self.refuse(function)?;
         let arguments = self.read(state)?;
         let joined = self.joined(&arguments)?;
-        let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
+        let invalid = Invalid::named(invalid)?;
+        let mut bad = self.bad_rows(&joined, invalid)?;
         let [t, q, v, a, parameters] = [0, 1, 2, 3, 4].map(|index| &*joined.arguments[index]);
         let parameters = if self.is_single() { &[][..] } else { parameters };
         let rows = ParameterRows { t, q, v, a, parameters };
         let width = of_row.iter().product::<usize>();
+        let finite = if function == FunctionId::ForwardDynamics { width } else { 0 };
         if joined.shape.is_empty() && bad.is_empty() {
-            let out = zeros(py, &[], of_row);
-            self.with_workspace(function, |evaluation| {
-                evaluation.run(&rows, 0..1, out.readwrite().as_slice_mut().unwrap_or_default());
-            });
-            return Ok(out.into());
+            let array = zeros(py, &[], of_row);
+            let mut numbers = array.readwrite();
+            let out = numbers.as_slice_mut().unwrap_or_default();
+            self.with_workspace(function, |evaluation| evaluation.run(&rows, 0..1, out));
+            settle(py, out, &mut bad, (width, finite), &joined.shape, invalid)?;
+            return Ok(array.into());
         }
         // Room that NumPy asks the system for comes in larger pages.
         let array = zeros(py, &joined.shape, of_row);
@@ -87,23 +91,23 @@ impl Crane {
         let out = numbers.as_slice_mut().unwrap_or_default();
         let make = || BatchEvaluation::<f64x8>::new(&self.live, function);
         for_rows(py, (PIECE, width), out, make, |evaluation, range, out| evaluation.run(&rows, range, out))?;
-        forget(out, &bad, width);
-        warn_of_rows(py, &bad, &joined.shape)?;
+        settle(py, out, &mut bad, (width, finite), &joined.shape, invalid)?;
         Ok(array.into())
     }
 
-    /// The same by a function of one crane.
+    /// The same by a function of one crane; so many first numbers of a row must be finite.
     pub fn one_by_one<'py>(
         &self,
         py: Python<'py>,
         state: StateArguments<'py>,
-        of_row: &[usize],
+        (of_row, finite): (&[usize], usize),
         invalid: &str,
         write: impl Fn(&crane_live::LiveCrane, &Moment, &mut [f64]) + Sync,
     ) -> Array<'py> {
         let arguments = self.read(state)?;
         let joined = self.joined(&arguments)?;
-        let bad = self.bad_rows(&joined, STATE, Invalid::named(invalid)?)?;
+        let invalid = Invalid::named(invalid)?;
+        let mut bad = self.bad_rows(&joined, invalid)?;
         let (n, width) = (self.live.size(), of_row.iter().product::<usize>());
         let rows = map_rows(py, joined.rows(), |row, _| {
             let mut out = vec![0.0; width];
@@ -116,8 +120,7 @@ impl Crane {
             out
         })?;
         let mut out = rows.concat();
-        forget(&mut out, &bad, width);
-        warn_of_rows(py, &bad, &joined.shape)?;
+        settle(py, &mut out, &mut bad, (width, finite), &joined.shape, invalid)?;
         array(py, out, &joined.shape, of_row).map(Numbers::from)
     }
 
@@ -134,12 +137,17 @@ impl Crane {
             Some(Refusal::Loop(joint)) => format!("depends on {}", joint.closes()),
         };
         let instead = match function {
-            FunctionId::Linearise => "use modes(q)",
+            FunctionId::Linearise => "use state_space(q), or modes(q)",
             FunctionId::DriveForcesAtRest => "use statics",
             _ if refusal == Some(Refusal::TooLarge) => "use linearise(q, v, a, t)",
-            FunctionId::FrictionForces => "use simulate, whose columns contain them",
-            _ if self.live.description().has_hidden_forces() => "use simulate or simulation",
-            _ => "use simulate, whose columns contain them",
+            FunctionId::ForwardDynamicsDerivatives
+            | FunctionId::DynamicResidualDerivatives
+            | FunctionId::ForceDerivatives => "use state_space, whose A contains those of the accelerations",
+            FunctionId::ForwardDynamics | FunctionId::DynamicResidual => "use state_derivatives(q, v, x, t)",
+            FunctionId::Forces => {
+                "use state_derivatives(q, v, x, t) for accelerations, columns_at(q, v, x, t) for the efforts of drives"
+            }
+            _ => "use columns_at(q, v, x, t), which has what drives, pressures and joints exert",
         };
         let name = &self.live.description().name;
         let or = if let Some(Refusal::Loop(joint)) = refusal { joint.remedy() } else { "" };
@@ -161,7 +169,7 @@ impl Crane {
         let mut crane = self.live.clone();
         if !self.is_single() && self.parameters.width > 0 {
             // Checked when they were given.
-            let _ = crane.set_parameters(joined.row(4, self.parameters.width, row));
+            let _ = crane.set_parameters(joined.row(PARAMETERS, self.parameters.width, row));
         }
         crane
     }
@@ -185,48 +193,71 @@ impl Crane {
         Joined::new(&[("t", t), ("q", q), ("v", v), ("a", a), ("the parameters", &self.parameters)])
     }
 
-    /// Rows with numbers that are not finite, or with parameters that break a rule. `names`: what the first four arguments are called.
-    pub fn bad_rows(&self, joined: &Joined<'_>, names: [&str; 4], invalid: Invalid) -> PyResult<Vec<BadRow>> {
-        let n = self.live.size();
-        let coordinates = &self.live.description().coordinates;
+    /// Rows with numbers that are not finite, or with parameters that break a rule. The first arguments are a time, coordinates, rates,
+    /// accelerations and parameters.
+    pub fn bad_rows(&self, joined: &Joined<'_>, invalid: Invalid) -> PyResult<Vec<BadRow>> {
+        let description = self.live.description();
+        let place = |argument: usize, index: usize| match argument {
+            1..PARAMETERS => format!("[{index}] ({})", description.coordinates[index].name),
+            _ if joined.names[argument].0 == "x" => {
+                format!("[{index}] ({})", force_states::columns(description)[index])
+            }
+            _ if joined.names[argument].1 > 1 => format!("[{index}]"),
+            _ => String::new(),
+        };
         let mut bad: Vec<BadRow> = Vec::new();
-        for (name, list, size) in
-            [(0, 1), (1, n), (2, n), (3, n)].map(|(i, size)| (names[i], &joined.arguments[i], size))
-        {
-            if list.iter().all(|x| x.is_finite()) {
+        for (argument, (name, width)) in joined.names.iter().enumerate() {
+            if argument == PARAMETERS || joined.arguments[argument].iter().all(|x| x.is_finite()) {
                 continue;
             }
             for row in 0..joined.rows() {
-                let first = if list.len() <= size { 0 } else { row * size };
-                let Some(index) = list[first..first + size].iter().position(|x| !x.is_finite()) else { continue };
-                let value = list[first + index];
-                let of = coordinates
-                    .get(index)
-                    .filter(|_| name != "t")
-                    .map_or(String::new(), |info| format!("[{index}] ({})", info.name));
+                let numbers = joined.row(argument, *width, row);
+                let Some(index) = numbers.iter().position(|x| !x.is_finite()) else { continue };
+                let (of, value) = (place(argument, index), numbers[index]);
                 bad.push(BadRow { row, reason: format!("{name}{of} is {value}, not a finite number") });
             }
         }
         if !self.bad.is_empty() {
-            let refused = |row: &usize| self.live.check(joined.row(4, self.parameters.width, *row)).err();
+            let refused = |row: &usize| self.live.check(joined.row(PARAMETERS, self.parameters.width, *row)).err();
             bad.extend((0..joined.rows()).filter_map(|row| Some(BadRow { row, reason: refused(&row)?.to_string() })));
         }
         bad.sort_by_key(|bad| bad.row);
         bad.dedup_by_key(|bad| bad.row);
-        match (bad.first(), invalid) {
-            (Some(first), Invalid::Raise) => {
-                let hint =
-                    if joined.shape.is_empty() { "" } else { "; invalid=\"nan\" makes the results of such rows NaN" };
-                Err(PyValueError::new_err(format!("{}{hint}", describe(first, &joined.shape))))
-            }
-            _ => Ok(bad),
-        }
+        raise_first(&bad, &joined.shape, invalid)?;
+        Ok(bad)
     }
 }
 
-/// Makes the numbers of bad rows NaN.
-pub fn forget(out: &mut [f64], bad: &[BadRow], width: usize) {
-    for bad in bad {
+/// Raises why the first bad row is bad, if that was asked for.
+fn raise_first(bad: &[BadRow], shape: &[usize], invalid: Invalid) -> PyResult<()> {
+    let (Some(first), Invalid::Raise) = (bad.first(), invalid) else { return Ok(()) };
+    let hint = if shape.is_empty() { "" } else { "; invalid=\"nan\" makes the results of such rows NaN" };
+    Err(PyValueError::new_err(format!("{}{hint}", describe(first, shape))))
+}
+
+/// Makes the numbers of bad rows NaN, and warns of them. Rows are also bad whose `finite` first numbers, of `width`, are not all finite.
+pub fn settle(
+    py: Python<'_>,
+    out: &mut [f64],
+    bad: &mut Vec<BadRow>,
+    (width, finite): (usize, usize),
+    shape: &[usize],
+    invalid: Invalid,
+) -> PyResult<()> {
+    let known: Vec<usize> = bad.iter().map(|bad| bad.row).collect();
+    let rows = if finite > 0 { out.len() / width } else { 0 };
+    let overflows = |row: &usize| out[row * width..][..finite].iter().any(|number| !number.is_finite());
+    let found = (0..rows).filter(|row| known.binary_search(row).is_err()).filter(overflows);
+    bad.extend(found.map(|row| {
+        BadRow {
+            row,
+            reason: "accelerations are not finite: rates are too large, or a linkage cannot be assembled in this pose"
+                .to_owned(),
+        }
+    }));
+    raise_first(bad, shape, invalid)?;
+    for bad in &*bad {
         out[bad.row * width..(bad.row + 1) * width].fill(f64::NAN);
     }
+    warn_of_rows(py, bad, shape)
 }

@@ -66,7 +66,7 @@ impl Crane {
     fn transform_second_derivatives<'py>(&self, py: Python<'py>, q: ArrayLike<'py>, invalid: &str) -> Array<'py> {
         let (bodies, n) = (self.live.description().bodies.len(), self.live.size());
         let state = StateArguments::pose(q);
-        self.one_by_one(py, state, &[bodies, n, n, 4, 4], invalid, |crane, Moment { q, .. }, out| {
+        self.one_by_one(py, state, (&[bodies, n, n, 4, 4], 0), invalid, |crane, Moment { q, .. }, out| {
             let crane: &dyn DynCrane = crane;
             let mut matrices = crane.transform_second_derivatives_at(q).into_iter();
             let tree = (crane as &dyn DynCrane).tree();
@@ -117,7 +117,8 @@ impl Crane {
     fn function<'py>(&self, py: Python<'py>, id: FunctionId, state: StateArguments<'py>, invalid: &str) -> Array<'py> {
         let has_loops = !self.live.loop_joints().is_empty() && !self.live.description().has_hidden_forces();
         if id == FunctionId::ForwardDynamics && has_loops {
-            return self.one_by_one(py, state, &[self.live.size()], invalid, |crane, at, out| {
+            let n = self.live.size();
+            return self.one_by_one(py, state, (&[n], n), invalid, |crane, at, out| {
                 let crane: &dyn DynCrane = crane;
                 out.copy_from_slice(crane.accelerations_at(at.t, &at.q, &at.v).as_slice());
             });

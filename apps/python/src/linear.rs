@@ -1,7 +1,6 @@
 //! Linear models about states, row by row, and margins of loops around them.
 
 use crane_model::dyn_crane::{DynCrane, Functions};
-use crane_model::force_states;
 use crane_model::linear::{About, Forces, Input, LinearModel, Output, linear_model, outputs};
 use crane_model::margins::{self, Loop, Margins, Plant, Term};
 use crane_model::nalgebra::{DMatrix, DVector};
@@ -13,7 +12,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{STATE, StateArguments};
+use crate::evaluation::StateArguments;
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_numbers, warn_of_rows};
 use crate::parallel::map_rows;
 use crate::types::{Array, ArrayLike, Dict, Given, Numbers};
@@ -67,18 +66,7 @@ impl Crane {
     ) -> PyResult<Dict<'py>> {
         let (invalid, forces) = (Invalid::named(invalid)?, forces_named(valves)?);
         let [t, q, v, _] = self.read(StateArguments { t, q: Some(q), v, a: None })?;
-        let names = force_states::columns(self.live.description());
-        let x = x.map_or_else(
-            || Ok(Argument::none()),
-            |x| {
-                Argument::of_width(
-                    "x",
-                    &x,
-                    names.len(),
-                    if names.is_empty() { "it has no states of forces" } else { "those of the states of forces" },
-                )
-            },
-        )?;
+        let x = self.read_states(x)?;
         let none = Argument::none();
         let joined = Joined::new(&[
             ("t", &t),
@@ -88,25 +76,31 @@ impl Crane {
             ("the parameters", &self.parameters),
             ("x", &x),
         ])?;
-        let mut bad = self.bad_rows(&joined, STATE, invalid)?;
+        let mut bad = self.bad_rows(&joined, invalid)?;
         let (inputs, outputs) = (self.inputs_named(inputs)?, self.outputs_named(outputs)?);
         let n = self.live.size();
         let rest = vec![0.0; n];
-        let found = map_rows(py, joined.rows(), |row, _| {
-            if let Some(wrong) = bad.iter().find(|wrong| wrong.row == row) {
-                return Err(wrong.reason.clone());
-            }
-            let [t, q, v] = [(0, 1), (1, n), (2, n)].map(|(index, size)| joined.row(index, size, row));
-            let x = joined.row(5, names.len(), row);
-            let about = About {
-                t: t.first().copied().unwrap_or(0.0),
-                q,
-                v: if v.is_empty() { &rest } else { v },
-                x: if x.is_empty() { forces } else { Forces::Given(x) },
-                steady,
-            };
-            linear_model(&self.of_joined_row(&joined, row), &about, &inputs, &outputs).map_err(|none| none.to_string())
-        })?;
+        let found =
+            map_rows(py, joined.rows(), |row, _| {
+                if let Some(wrong) = bad.iter().find(|wrong| wrong.row == row) {
+                    return Err(wrong.reason.clone());
+                }
+                let [t, q, v] = [(0, 1), (1, n), (2, n)].map(|(index, size)| joined.row(index, size, row));
+                let x = joined.row(5, x.width, row);
+                let about = About {
+                    t: t.first().copied().unwrap_or(0.0),
+                    q,
+                    v: if v.is_empty() { &rest } else { v },
+                    x: if x.is_empty() { forces } else { Forces::Given(x) },
+                    steady,
+                };
+                let model = linear_model(&self.of_joined_row(&joined, row), &about, &inputs, &outputs);
+                match model.map_err(|none| none.to_string())? {
+                    model if model.a.iter().all(|number| number.is_finite()) => Ok(model),
+                    _ => Err("A is not finite: rates are too large, or a linkage cannot be assembled in this pose"
+                        .to_owned()),
+                }
+            })?;
         bad.clear();
         let refused = |(row, found): (usize, &Result<LinearModel, String>)| {
             found.as_ref().err().map(|reason| BadRow { row, reason: reason.clone() })

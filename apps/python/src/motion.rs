@@ -20,6 +20,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::{Crane, input_index};
+use crate::evaluation::StateArguments;
 use crate::mistakes::{BadRow, Invalid, NoEquilibrium, describe, warn_of_rows};
 use crate::parallel::{Watch, threads};
 use crate::types::{Dict, Given, Keys, Progress, hints};
@@ -131,7 +132,8 @@ impl Timing {
 
 /// A failure as an exception.
 pub fn raised(failed: &Failed) -> PyErr {
-    let words = format!("{failed}; {}", failed.advice());
+    // The command's option has a function here.
+    let words = format!("{failed}; {}", failed.advice().replace("`--start`", "`coordinates_of`"));
     match *failed.reason {
         Reason::Equilibrium { .. } => NoEquilibrium::new_err(words),
         _ => PyRuntimeError::new_err(words),
@@ -299,12 +301,14 @@ impl Crane {
         let invalid = Invalid::named(invalid)?;
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
-        let (shape, rows) = self.cases(q, v, inputs)?;
+        let (shape, mut rows, wrong) = self.cases(q, v, inputs, invalid)?;
         let (shape, count) = (&shape, rows.len());
+        let mut is_sound = (0..count).map(|row| wrong.iter().all(|wrong| wrong.row != row));
+        rows.retain(|_| is_sound.next().unwrap_or(true));
         let settings = Settings { audit: false, ..timing.settings(description)? };
         // A step that was asked for is judged; otherwise a safe one is found.
         let safe_timing = Timing { safe_step: timing.step.is_none(), ..timing.clone() };
-        let watch = Watch::reporting(progress, count);
+        let watch = Watch::reporting(progress, rows.len());
         let outcomes = py.detach(|| {
             let mut settings = settings;
             if !settings.method.is_adaptive() {
@@ -329,38 +333,51 @@ impl Crane {
             Ok::<_, PyErr>(ensemble::run_ensemble(crane, &rows, &settings, &execution))
         });
         watch.finish(py)?;
-        let outcomes = outcomes?;
-        let reason = |(row, outcome): (usize, &ensemble::Outcome)| {
-            Some(BadRow { row, reason: outcome.run.as_ref().err()?.to_string() })
+        let mut outcomes = outcomes?.into_iter();
+        let outcome = |row: usize| match wrong.iter().find(|wrong| wrong.row == row) {
+            Some(wrong) => Err(wrong.reason.clone()),
+            None => outcomes.next().ok_or_else(String::new),
         };
-        let bad: Vec<BadRow> = outcomes.iter().enumerate().filter_map(reason).collect();
+        let outcomes: Vec<Result<ensemble::Outcome, String>> = (0..count).map(outcome).collect();
+        let failure = |outcome: &Result<ensemble::Outcome, String>| match outcome {
+            Ok(outcome) => outcome.run.as_ref().err().map(ToString::to_string),
+            Err(reason) => Some(reason.clone()),
+        };
+        let bad = outcomes.iter().enumerate().filter_map(|(row, of)| Some(BadRow { row, reason: failure(of)? }));
+        let bad: Vec<BadRow> = bad.collect();
         if let (Some(first), Invalid::Raise) = (bad.first(), invalid) {
             return Err(PyRuntimeError::new_err(describe(first, shape)));
         }
         warn_of_rows(py, &bad, shape)?;
         let columns = Peaks::columns(crane);
-        let values = outcomes.iter().flat_map(|outcome| match &outcome.peaks {
-            Some(peaks) => peaks.values().collect(),
-            None => vec![f64::NAN; columns.len()],
-        });
+        let run = |outcome: &ensemble::Outcome| outcome.peaks.as_ref().map(|peaks| peaks.values().collect());
+        let values = outcomes
+            .iter()
+            .flat_map(|outcome| outcome.as_ref().ok().and_then(run).unwrap_or_else(|| vec![f64::NAN; columns.len()]));
         let n = crane.size();
-        let or_nan = |state: &Vec<f64>| if state.len() == n { state.clone() } else { vec![f64::NAN; n] };
         let all = PyDict::new(py);
         all.set_item("columns", columns_with_units(&columns))?;
         all.set_item("table", array(py, values.collect(), shape, &[columns.len()])?)?;
-        all.set_item("time", array(py, outcomes.iter().map(ensemble::Outcome::time).collect(), shape, &[])?)?;
-        let ends =
-            |of: fn(&InitialState) -> &Vec<f64>| outcomes.iter().flat_map(|outcome| or_nan(of(&outcome.end))).collect();
+        let times = outcomes.iter().map(|outcome| outcome.as_ref().map_or(0.0, ensemble::Outcome::time));
+        all.set_item("time", array(py, times.collect(), shape, &[])?)?;
+        let ends = |of: fn(&InitialState) -> &Vec<f64>| {
+            let reached = |outcome: &Result<ensemble::Outcome, String>| {
+                let state = outcome.as_ref().ok().map(|outcome| of(&outcome.end).clone());
+                state.filter(|state| state.len() == n).unwrap_or_else(|| vec![f64::NAN; n])
+            };
+            outcomes.iter().flat_map(reached).collect()
+        };
         all.set_item("q", array(py, ends(|end| &end.q), shape, &[n])?)?;
         all.set_item("v", array(py, ends(|end| &end.v), shape, &[n])?)?;
-        let status = |outcome: &ensemble::Outcome| match &outcome.run {
-            Ok(_) => "done".to_owned(),
-            Err(reason) => reason.to_string(),
-        };
+        let status = |outcome| failure(outcome).unwrap_or_else(|| "done".to_owned());
         all.set_item("status", outcomes.iter().map(status).collect::<Vec<_>>())?;
-        all.set_item("cautions", outcomes.iter().map(|outcome| outcome.cautions.join("; ")).collect::<Vec<_>>())?;
-        let steps =
-            outcomes.iter().map(|outcome| outcome.run.as_ref().map_or(f64::NAN, |run| run.statistics.steps as f64));
+        let cautions =
+            outcomes.iter().map(|outcome| outcome.as_ref().map_or_else(|_| String::new(), |of| of.cautions.join("; ")));
+        all.set_item("cautions", cautions.collect::<Vec<_>>())?;
+        let taken = |outcome: &Result<ensemble::Outcome, String>| {
+            outcome.as_ref().ok()?.run.as_ref().ok().map(|run| run.statistics.steps as f64)
+        };
+        let steps = outcomes.iter().map(|outcome| taken(outcome).unwrap_or(f64::NAN));
         all.set_item("steps", array(py, steps.collect(), shape, &[])?)?;
         all.set_item("shape", shape.clone())?;
         Ok(all.into())
@@ -368,53 +385,47 @@ impl Crane {
 }
 
 impl Crane {
-    /// Cases over the common axes of parameters, starts and inputs.
+    /// Cases over the common axes of parameters, starts and inputs, and those that cannot be computed.
     pub fn cases(
         &self,
         q: Given<'_>,
         v: Given<'_>,
         inputs: Option<Dict<'_, Option<hints::ArrayLike>>>,
-    ) -> PyResult<(Vec<usize>, Vec<Case>)> {
+        invalid: Invalid,
+    ) -> PyResult<(Vec<usize>, Vec<Case>, Vec<BadRow>)> {
         let description = self.live.description();
-        let start = |name: &str, given: Given<'_>| -> PyResult<Argument> {
-            let Some(given) = given else { return Ok(Argument::none()) };
-            let argument = Argument::coordinates(name, &given, description)?;
-            check_finite(name, &argument, description)?;
-            Ok(argument)
-        };
-        let (q, v) = (start("q", q)?, start("v", v)?);
+        let [t, q, v, a] = self.read(StateArguments { q, v, ..StateArguments::default() })?;
         let mut changed: Vec<(usize, String, Option<Argument>)> = Vec::new();
         for (name, value) in inputs.iter().flat_map(|inputs| inputs.iter()) {
             let name: String = name.extract()?;
             let index = input_index(description, &name)?;
             let (label, unit) = (format!("inputs['{name}']"), &description.inputs[index].unit);
             let values = if value.is_none() { None } else { Some(Argument::scalars_in(unit, &label, &value)?) };
-            if let Some(wrong) = values.iter().flat_map(|values| &values.numbers).find(|value| !value.is_finite()) {
-                return Err(PyValueError::new_err(format!("inputs['{name}'] is {wrong}, not a finite number")));
-            }
-            changed.push((index, format!("inputs['{name}']"), values));
+            changed.push((index, label, values));
         }
-        let mut all = vec![("q", &q), ("v", &v), ("the parameters", &self.parameters)];
+        let mut all = vec![("t", &t), ("q", &q), ("v", &v), ("a", &a), ("the parameters", &self.parameters)];
+        let first_input = all.len();
         all.extend(changed.iter().filter_map(|(_, name, values)| Some((name.as_str(), values.as_ref()?))));
         let joined = Joined::new(&all)?;
+        let bad = self.bad_rows(&joined, invalid)?;
         let n = self.live.size();
         let case = |row: usize| {
             let mut inputs: Vec<Option<f64>> = Vec::new();
             if !changed.is_empty() {
                 inputs.extend((0..description.inputs.len()).map(|index| self.live.input(index)));
             }
-            let mut values = 3..;
+            let mut values = first_input..;
             for (index, _, given) in &changed {
                 inputs[*index] = given.as_ref().zip(values.next()).map(|(_, index)| joined.row(index, 1, row)[0]);
             }
             let state = |given: bool, index: usize| given.then(|| joined.row(index, n, row).to_vec());
             Case {
-                parameters: joined.row(2, self.parameters.width, row).to_vec(),
+                parameters: joined.row(4, self.parameters.width, row).to_vec(),
                 inputs,
-                q: state(q.width > 0, 0),
-                v: state(v.width > 0, 1),
+                q: state(q.width > 0, 1),
+                v: state(v.width > 0, 2),
             }
         };
-        Ok((joined.shape.clone(), (0..joined.rows()).map(case).collect()))
+        Ok((joined.shape.clone(), (0..joined.rows()).map(case).collect(), bad))
     }
 }

@@ -23,11 +23,14 @@ static CORES: LazyLock<usize> =
 /// Sets how many threads a call uses; None: as many as the machine has.
 #[pyfunction]
 #[pyo3(signature = (count=None))]
-pub fn set_threads(count: Option<usize>) -> PyResult<()> {
-    if count == Some(0) {
-        return Err(PyValueError::new_err("set_threads(0): write a number of 1 or more, or None for all cores"));
-    }
-    THREADS.store(count.unwrap_or(0), Ordering::Relaxed);
+pub fn set_threads(count: Option<i64>) -> PyResult<()> {
+    let threads = match count {
+        None => 0,
+        Some(count) => usize::try_from(count).ok().filter(|count| *count > 0).ok_or_else(|| {
+            PyValueError::new_err(format!("set_threads({count}): write a number of 1 or more, or None for all cores"))
+        })?,
+    };
+    THREADS.store(threads, Ordering::Relaxed);
     Ok(())
 }
 

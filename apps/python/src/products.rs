@@ -14,8 +14,8 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{STATE, StateArguments, forget};
-use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
+use crate::evaluation::{StateArguments, settle};
+use crate::mistakes::Invalid;
 use crate::parallel::for_rows;
 use crate::types::{Array, ArrayLike, Given, Numbers};
 
@@ -205,16 +205,7 @@ impl Crane {
             (name, vectors),
         ])?;
         let invalid = Invalid::named(invalid)?;
-        let mut bad = self.bad_rows(&joined, STATE, invalid)?;
-        for row in 0..joined.rows() {
-            let vector = joined.row(5, vectors.width, row);
-            let Some(index) = vector.iter().position(|x| !x.is_finite()) else { continue };
-            let reason = format!("{name} contains {}, not a finite number", vector[index]);
-            if invalid == Invalid::Raise {
-                return Err(PyValueError::new_err(describe(&BadRow { row, reason }, &joined.shape)));
-            }
-            bad.push(BadRow { row, reason });
-        }
+        let mut bad = self.bad_rows(&joined, invalid)?;
         let n = self.live.size();
         let mut out = vec![0.0; joined.rows() * width];
         let widths = [1, n, n, n, self.parameters.width, vectors.width];
@@ -235,8 +226,7 @@ impl Crane {
             }
         };
         for_rows(py, (PIECE, width), &mut out, make, work)?;
-        forget(&mut out, &bad, width);
-        warn_of_rows(py, &bad, &joined.shape)?;
+        settle(py, &mut out, &mut bad, (width, 0), &joined.shape, invalid)?;
         array(py, out, &joined.shape, of_row).map(Numbers::from)
     }
 }

@@ -10,14 +10,13 @@ use crane_model::force_states::{self, ForceStates};
 use crane_model::runs::ensemble::Case;
 use crane_model::runs::{Reason, Start};
 use crane_model::{StateAt, Text};
-use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Argument, array};
+use crate::arrays::{Argument, array, fixed};
 use crate::crane::Crane;
-use crate::mistakes::{BadRow, describe};
+use crate::mistakes::{BadRow, Invalid, describe};
 use crate::motion::{Timing, raised, statistics, unless};
 use crate::parallel::map_rows;
 use crate::types::{Array, ArrayLike, Dict, Given, Keys, Numbers, hints};
@@ -92,7 +91,7 @@ impl Crane {
                 x.len()
             )));
         }
-        let (shape, cases) = self.cases(q, v, inputs)?;
+        let (shape, cases, _) = self.cases(q, v, inputs, Invalid::Raise)?;
         let begin = |case: &Case| {
             let mut crane = self.live.clone();
             crane.set_parameters(&case.parameters).map_err(|refused| PyValueError::new_err(refused.to_string()))?;
@@ -384,12 +383,6 @@ impl Motions {
         }
         Ok(changes)
     }
-}
-
-/// An array that cannot be changed: a change would not move a crane.
-fn fixed(numbers: Bound<'_, PyArrayDyn<f64>>) -> Numbers<'_> {
-    numbers.readwrite().make_nonwriteable();
-    numbers.into()
 }
 
 /// The failure of a motion, as an exception.

@@ -18,8 +18,8 @@ const OF_LINE: usize = 5;
 
 #[pymethods]
 impl Crane {
-    /// (..., cuts, 6): force, N, and moment, N m, that the part beyond each cut exerts on the part before it; `Crane.info["cuts"]`
-    /// lists the cuts. a: accelerations; at rest unless v and a are given.
+    /// (..., cuts, 6): force, N, and moment, N m, that the part beyond each cut exerts on the part before it, with the forces of cylinders
+    /// and of joints that close loops; `Crane.info["cuts"]` lists the cuts. a: accelerations; at rest unless v and a are given.
     #[pyo3(signature = (q, v=None, a=None, t=None, *, invalid="raise"))]
     fn internal_forces<'py>(
         &self,
@@ -37,8 +37,8 @@ impl Crane {
             a: a.or_else(|| Some(self.rest(py))),
         };
         let of_row = [self.live.description().cuts().len(), 6];
-        if self.live.description().has_valves() {
-            return self.one_by_one(py, state, &of_row, invalid, write_wrenches);
+        if self.live.refusal(FunctionId::InternalForces).is_some() {
+            return self.one_by_one(py, state, (&of_row, 0), invalid, write_wrenches);
         }
         self.compute(py, FunctionId::InternalForces, state, invalid)
     }
@@ -62,7 +62,7 @@ impl Crane {
             a: a.or_else(|| Some(self.rest(py))),
         };
         let width = OF_SECTION * self.live.description().sections.len() + OF_LINE;
-        self.one_by_one(py, state, &[width], invalid, write_wrenches_of)
+        self.one_by_one(py, state, (&[width], 0), invalid, write_wrenches_of)
     }
 }
 
@@ -73,7 +73,7 @@ impl Crane {
     }
 }
 
-/// Internal forces, including those of cylinders with a valve.
+/// Internal forces, including those of cylinders with a valve and of joints that close loops.
 fn write_wrenches(crane: &LiveCrane, Moment { t, q, v, a }: &Moment, out: &mut [f64]) {
     let crane: &dyn DynCrane = crane;
     for (wrench, out) in crane.internal_forces_at(*t, q, v, a).iter().zip(out.chunks_mut(6)) {

@@ -12,7 +12,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Argument, Joined, array};
 use crate::crane::Crane;
-use crate::evaluation::{Moment, STATE, StateArguments};
+use crate::evaluation::{Moment, StateArguments};
 use crate::mistakes::{BadRow, Invalid, describe, warn_of_rows};
 use crate::parallel::map_rows;
 use crate::types::{Array, ArrayLike, Dict, Given};
@@ -60,7 +60,7 @@ impl Crane {
         self.one_by_one(
             py,
             StateArguments { t, q: Some(q), v: Some(v), a: Some(a) },
-            &[3, n, n],
+            (&[3, n, n], 0),
             invalid,
             |crane, at, out| {
                 let motions = (crane as &dyn DynCrane).linearise_motion(at.t, [&at.q, &at.v, &at.a]);
@@ -111,7 +111,7 @@ impl Crane {
             }
         };
         let state = StateArguments { t, q: Some(start), v: Some(rates), a: Some(positions) };
-        self.one_by_one(py, state, &[3 * n + 3], invalid, find)
+        self.one_by_one(py, state, (&[3 * n + 3], 0), invalid, find)
     }
 
     /// Modes about poses, over parameters and poses: `Crane.modes` names them.
@@ -192,7 +192,7 @@ impl Crane {
         let q = Argument::coordinates("q", q, self.live.description())?;
         let joined =
             Joined::new(&[("t", &none), ("q", &q), ("v", &none), ("a", &none), ("the parameters", &self.parameters)])?;
-        let wrong = self.bad_rows(&joined, STATE, invalid)?;
+        let wrong = self.bad_rows(&joined, invalid)?;
         let n = self.live.size();
         let found = map_rows(py, joined.rows(), |row, _| {
             if let Some(wrong) = wrong.iter().find(|wrong| wrong.row == row) {

@@ -44,7 +44,7 @@ OTHERS = {
 }
 # Functions that take one state, or none, and what else they need.
 ONE_STATE = {"simulate", "simulation", "_record", "_motions"}
-NO_STATE = {"_acting", "buckling", "_buckling", "_changed", "_fixed_bodies", "_with_beam", "with_beam", "combined", "frames", "joint_states", "coordinates_of", "_recalled", "_input_bounds", "vector_simulation", "replace", "page", "render", "_render", "export", "picture", "_parameter_rows", "_frame_poses", "_page", "_envelope", "sensitivity", "_sensitivity", "_vjp", "_jvp", "_product_shape", "_product_numbers"}
+NO_STATE = {"_acting", "_coordinates", "buckling", "_buckling", "_changed", "_fixed_bodies", "_with_beam", "with_beam", "combined", "frames", "joint_states", "coordinates_of", "_recalled", "_input_bounds", "vector_simulation", "replace", "page", "render", "_render", "export", "picture", "_parameter_rows", "_frame_poses", "_page", "_envelope", "sensitivity", "_sensitivity", "_vjp", "_jvp", "_product_shape", "_product_numbers"}
 
 
 @dataclasses.dataclass

@@ -371,6 +371,8 @@ def test_bands_of_numbers_that_are_computed(arm):
     deviation = 0.8 / np.linalg.norm(masses * G)
     torque = found.confidence(TORQUE, bob=100.0, other=1e-6)
     assert torque.high - torque.value == pytest.approx(NORMAL * 100.0 * G * deviation, rel=1e-4)
+    with pytest.raises(ValueError, match="draws=0: write how many"):
+        found.confidence(lambda c: c.n, draws=0)
     drawn = found.confidence(lambda c: c.statics().drive_efforts[1], draws=400, bob=100.0, other=1e-6)
     assert drawn.high - drawn.low == pytest.approx(torque.high - torque.low, rel=0.15)
     assert drawn.value == pytest.approx(torque.value, rel=1e-9) and drawn.draws.shape == (400,)

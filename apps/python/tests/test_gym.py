@@ -256,6 +256,36 @@ def test_what_is_refused():
         environment().step([0.0])
 
 
+def test_what_no_episode_could_use_is_refused_before():
+    for wrong, kind, words in (
+        ({"reward": None}, TypeError, "reward=None: give a function of results"),
+        ({"dt": -0.1}, ValueError, "dt is -0.1: write a number above 0"),
+        ({"duration": np.nan}, ValueError, "duration is nan"),
+        ({"scales": {"load_x": 0.0}}, ValueError, r"scales\['load_x'\] is 0.0"),
+    ):
+        with pytest.raises(kind, match=words):
+            environment(**wrong)
+    with pytest.raises(ValueError, match="num_envs=0"):
+        vector(0)
+    with pytest.raises(ValueError, match="the distance of 'column_psi' that counts as 1 is 0.0: write a number above 0"):
+        reach({"column_psi": 0.0})
+    env = environment(reward=lambda results: np.nan)
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match="the reward is NaN"):
+        env.step([0.0])
+    with pytest.raises(ValueError, match="actions hold NaN"):
+        env.step([np.nan])
+
+
+def test_actions_beyond_one_are_clipped():
+    ends = []
+    for action in (1.0, 5.0):
+        env = environment()
+        env.reset(seed=3)
+        ends.append(env.step([action])[0])
+    np.testing.assert_array_equal(*ends)
+
+
 def test_a_policy_learns_to_damp_the_swing(capsys):
     """A few rounds of the example already swing less than the untrained policy."""
     policy = slewing.train(rounds=4, directions=8)

@@ -52,6 +52,7 @@ SHORTER = {
         "duration=10": "duration=0.2",
         "simulate_ensemble(": "simulate_ensemble(duration=0.05, ",
         "np.linspace(0, 800, 81)": "np.linspace(0, 800, 3)",
+        "np.linspace(200, 2600, 81)": "np.linspace(200, 2600, 3)",
         "np.arange(0, 360, 15)": "[0, 90]",
         "np.arange(0, 75, 5)": "[30]",
         "range(500)": "range(10)",

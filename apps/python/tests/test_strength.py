@@ -157,7 +157,7 @@ def test_limits_of_a_load_chart(truck, knuckle):
         ({"ranges": {"payload": [1.0]}}, "is the load"),
         ({"ranges": {"arm": [np.nan]}}, "finite"),
         ({"ranges": {}}, "poses"),
-        ({"ranges": {"arm": [3.0]}, "tipping": 1.5}, "tipping=1.5 is out of range"),
+        ({"ranges": {"arm": [3.0]}, "tipping": 1.5}, "tipping=1.5: write a number from 0 to below 1"),
         ({"ranges": {"arm": [3.0]}, "efforts": {"boom": 1.0}}, "no drive `boom`"),
         ({"ranges": {"arm": [3.0]}, "load": "pay"}, "no live parameter `pay`"),
         ({"ranges": {"arm": [3.0]}, "point": "hok"}, "no point `hok`"),
@@ -209,7 +209,7 @@ def test_cylinders_limit_a_load_chart():
     assert (free.load == 1e4).all() and any("100 bar" in words for words in free.not_considered)
     for wrong, said in [
         ({"without": ["presure"]}, "no limit `presure`"),
-        ({"load_factor": 0.0}, "load_factor=0 is out of range"),
+        ({"load_factor": 0.0}, "load_factor=0: write a number above 0"),
         ({"ranges": {"arm": [0.0, 70.0]}}, "np.radians"),
     ]:
         with pytest.raises(ValueError, match=said):

@@ -32,6 +32,9 @@ def test_cases():
     with pytest.raises(ValueError, match="different lengths"):
         study.table({"a": [1, 2], "b": [1]})
     pytest.importorskip("scipy")
+    for wrong in ((8, 0), (0, np.inf)):
+        with pytest.raises(ValueError, match=r"a=\(.*write \(minimum, maximum\)"):
+            study.latin_hypercube(2, seed=1, a=wrong)
     cube = study.latin_hypercube(10, seed=1, a=(0, 1), b=(5, 6))
     # One sample in each tenth of every range.
     np.testing.assert_array_equal(np.sort((10 * cube["a"]).astype(int)), np.arange(10))

@@ -246,7 +246,8 @@ fn result(chain: &Chain, Function { id, product, shape, .. }: &Function) -> Stri
             format!("out: force and its derivatives with respect to length and rate, of the {}", names())
         }
         Shape::Structs(Struct::Wrench, count) if *id == FunctionId::InternalForces => {
-            format!("out: force x, y, z and moment x, y, z of each of {count} cuts, from the ground to the tip")
+            let open = if chain.has_loops() { ", without what loops transmit" } else { "" };
+            format!("out: force x, y, z and moment x, y, z of each of {count} cuts, from the ground to the tip{open}")
         }
         Shape::Structs(Struct::Wrench, _) => {
             format!("out: force x, y, z and moment x, y, z of all cuts, one after the other for the {}", names())

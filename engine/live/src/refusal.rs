@@ -35,6 +35,7 @@ impl LiveCrane {
             | FunctionId::DriveForces
             | FunctionId::DrivePower
             | FunctionId::Dissipation => description.has_hidden_forces(),
+            FunctionId::InternalForces => description.has_valves(),
             FunctionId::FrictionForces => !description.bristles.is_empty(),
             _ => false,
         };
@@ -42,8 +43,8 @@ impl LiveCrane {
             return Some(Refusal::ForceStates);
         }
         let loops_matter = match function {
-            FunctionId::Linearise | FunctionId::ForwardDynamicsDerivatives => true,
-            FunctionId::DriveForces | FunctionId::DrivePower | FunctionId::DriveForcesAtRest => {
+            FunctionId::Linearise | FunctionId::ForwardDynamicsDerivatives | FunctionId::InternalForces => true,
+            FunctionId::Forces | FunctionId::DriveForces | FunctionId::DrivePower | FunctionId::DriveForcesAtRest => {
                 !description.prescribed().is_empty()
             }
             _ => false,
