@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._native import real_array
+from .arguments import by_name
 from .closed import Closed
 from .results import Array
 
@@ -154,7 +156,7 @@ class Simulation(Closed):
 
         If it fails or is interrupted, the simulation stays where it was.
         """
-        linear = is_linear(hold)
+        linear, inputs = is_linear(hold), numbers_of(self._crane, inputs)
         if parameters:
             self._change(self._crane.replace(**parameters))
         values = self._state.inputs
@@ -181,7 +183,7 @@ class Simulation(Closed):
             dissipated=begin.dissipated + dissipated,
             parameters=self._present_parameters(self._motion) if marks else self._state.parameters,
             load_work=begin.load_work + load_work,
-            inputs={name: float(value) for name, value in values.items()} if inputs else values,
+            inputs={name: float(value if isinstance(value, (int, float)) else np.squeeze(value)) for name, value in values.items()} if inputs else values,
             x=x,
             marks=marks,
         )
@@ -257,6 +259,12 @@ class Simulation(Closed):
 def _as_set(inputs: dict[str, float | None], motion: Motions) -> dict[str, float | None]:
     """Inputs without those that follow motions of the spec: None is what these do already."""
     return {name: value for name, value in inputs.items() if value is not None or motion.can_set(name)}
+
+
+def numbers_of(crane: Crane, inputs: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Values of inputs by name, numbers instead of text with a unit."""
+    given = {} if inputs is None else by_name("inputs", inputs, '{"lever": 0.3}')
+    return {name: crane.replace(inputs={name: value}).inputs[name] if isinstance(value, str) else value for name, value in given.items()}
 
 
 def is_linear(hold: str) -> bool:

@@ -73,6 +73,7 @@ class StateSpace:
         """The model from sample to sample, `interval` s apart, with inputs that are constant between them (zero-order hold)."""
         if self.interval is not None:
             raise ValueError("the model is sampled already")
+        interval = float(real_array("interval", interval))
         if not (interval > 0.0 and math.isfinite(interval)):
             raise ValueError(f"interval={interval}: write a number of seconds above 0")
         size, count = self.B.shape[-2:]

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from ._native import real_array
 from .closed import Closed
 from .results import Array
-from .simulation import is_linear
+from .simulation import is_linear, numbers_of
 
 if TYPE_CHECKING:
     from ._native import Motions
@@ -206,7 +206,7 @@ class VectorSimulation(Closed):
         return VectorState(*path)
 
     def _advance(self, dt: float, steps: int, inputs: Mapping[str, ArrayLike] | None, hold: str, invalid: str) -> tuple[Array, Array, Array]:
-        linear, inputs = is_linear(hold), dict(inputs or {})
+        linear, inputs = is_linear(hold), numbers_of(self._base, inputs)
         if invalid not in ("raise", "nan"):
             raise ValueError(f'invalid={invalid!r}: write "raise" or "nan"')
         for name, value in inputs.items():

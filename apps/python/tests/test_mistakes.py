@@ -11,6 +11,14 @@ import pytest
 from crane.experiments import Run
 
 PAIRED = [0, 3, 1, 2]
+STEERED = """
+format: 1
+name: steered
+inputs: {turn: {unit: rad}}
+links:
+  - {name: arm, joint: {revolute: {axis: y}}, mass: 10, com: [1, 0, 0], inertia: {gyration: [0.1, 0.5, 0.5]}}
+drives: [{coordinate: arm_theta, stiffness: 1e5, damping: 1e3, motion: {input: turn}}]
+"""
 
 
 @pytest.fixture(scope="module")
@@ -159,6 +167,21 @@ def test_messages_say_what_to_write(knuckle):
     for call, kind, words in messages(knuckle):
         with pytest.raises(kind, match=re.escape(words)):
             call()
+
+
+def test_inputs_of_a_step_may_have_units():
+    """As text, 20 mrad = 0.02 rad; a wrong one leaves the simulation where it was."""
+    c = crane.load("steered.yaml", text=STEERED)
+    simulations = [c.simulation(), c.simulation(), c.vector_simulation(1)]
+    found = [of.step(0.1, inputs={"turn": value}) for of, value in zip(simulations, (0.02, "20 mrad", "20 mrad"), strict=True)]
+    assert simulations[1].crane.inputs == {"turn": 0.02} and simulations[2].inputs["turn"].tolist() == [0.02]
+    for other in found[1:]:
+        np.testing.assert_array_equal(np.squeeze(other.q), found[0].q)
+    np.testing.assert_array_equal(simulations[0].step(0.1, {"turn": np.array([0.03])}).q, simulations[1].step(0.1, {"turn": 0.03}).q)
+    for wrong, kind in (({"turn": "2 m"}, ValueError), ({"turn": [0.0, 1.0]}, ValueError), ([0.0], TypeError)):
+        with pytest.raises(kind, match="turn.* is in rad|has shape|inputs has values by name"):
+            simulations[1].step(0.1, inputs=wrong)
+        assert simulations[1].t == pytest.approx(0.2)
 
 
 def test_measured_columns_may_be_a_data_frame():

@@ -186,7 +186,7 @@ impl Way {
     }
 
     /// The rows that run together, with the index of the first: those left over by fleets, too few for one, run one by one, on as many threads.
-    fn pieces<'r>(self, rows: &'r [Case]) -> Vec<(usize, &'r [Case])> {
+    fn pieces(self, rows: &[Case]) -> Vec<(usize, &[Case])> {
         let (together, left) = match self {
             Way::Alone => (1, 0),
             Way::InLanes => (dynamics::ensemble::LANES, 0),

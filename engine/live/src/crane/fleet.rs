@@ -102,7 +102,7 @@ impl Fleet {
                 let len = item.numbers();
                 match count {
                     Count::WinchPieces => {
-                        spread(results, connectors.iter().map(|connector| connector.pieces), len, out)
+                        spread(results, connectors.iter().map(|connector| connector.pieces), len, out);
                     }
                     Count::Attachments => {
                         let points = connectors.iter().map(|connector| connector.points.len());
