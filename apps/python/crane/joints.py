@@ -29,7 +29,7 @@ class JointStates(NamedTuple):
 def joint_states(crane: Crane, q: ArrayLike, v: ArrayLike | None) -> JointStates:
     """As `Crane.joint_states`."""
     joints = _joints(crane)
-    q, v = np.broadcast_arrays(crane._coordinates("q", q), np.zeros(crane.n) if v is None else crane._coordinates("v", v))
+    q, v = np.broadcast_arrays(_state(crane, "q", q), np.zeros(crane.n) if v is None else _state(crane, "v", v))
     found = np.zeros((2, *q.shape[:-1], len(joints)))
     for index, joint in enumerate(joints):
         found[0, ..., index] = joint["at"]
@@ -44,7 +44,10 @@ def coordinates_of(crane: Crane, positions: Mapping[str, ArrayLike], q: ArrayLik
     joints = {joint["name"]: joint for joint in _joints(crane)}
     positions = by_name("positions", positions, f'{{"{next(iter(joints), "joint")}": 0.1}}')
     numbers = {name: real_array(f"joint {name!r}", position) for name, position in positions.items()}
-    start = crane.guess if q is None else crane._coordinates("q", q)
+    for name, position in numbers.items():
+        if not np.isfinite(position).all():
+            raise ValueError(f"joint {name!r} is at {position}: write finite numbers")
+    start = crane.guess if q is None else _state(crane, "q", q)
     found = np.array(np.broadcast_to(start, (*np.broadcast_shapes(start.shape[:-1], *(given.shape for given in numbers.values())), crane.n)))
     given = []
     for name, position in numbers.items():
@@ -60,6 +63,13 @@ def coordinates_of(crane: Crane, positions: Mapping[str, ArrayLike], q: ArrayLik
     if gaps.size and np.abs(gaps).max() > CLOSED:
         raise ValueError(f"no pose has these positions: loops and joints that follow others are open by {np.abs(gaps).max():.2g} m or rad")
     return found
+
+
+def _state(crane: Crane, name: str, given: ArrayLike) -> Array:
+    numbers = crane._coordinates(name, given)
+    if not np.isfinite(numbers).all():
+        raise ValueError(f"{name} is {numbers}: write finite numbers")
+    return numbers
 
 
 def _joints(crane: Crane) -> list[NamedJoint]:

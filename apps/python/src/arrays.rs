@@ -205,12 +205,12 @@ pub struct Joined<'a> {
     /// Each argument, with that many rows, or with one for all.
     pub arguments: Vec<Cow<'a, [f64]>>,
     /// Its name, and how many numbers a row of it has.
-    pub names: Vec<(String, usize)>,
+    pub names: Vec<(&'a str, usize)>,
 }
 
 impl<'a> Joined<'a> {
     /// Broadcasts as `NumPy` does.
-    pub fn new(arguments: &[(&str, &'a Argument)]) -> PyResult<Self> {
+    pub fn new(arguments: &[(&'a str, &'a Argument)]) -> PyResult<Self> {
         let mut shape: Vec<usize> = Vec::new();
         for (name, argument) in arguments {
             let axes = &argument.shape;
@@ -231,7 +231,7 @@ impl<'a> Joined<'a> {
                 }
             }
         }
-        let names = arguments.iter().map(|(name, argument)| ((*name).to_owned(), argument.width)).collect();
+        let names = arguments.iter().map(|(name, argument)| (*name, argument.width)).collect();
         let arguments = arguments.iter().map(|(_, argument)| argument.over(&shape)).collect();
         Ok(Self { shape, arguments, names })
     }

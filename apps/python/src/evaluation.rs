@@ -147,6 +147,10 @@ impl Crane {
             FunctionId::Forces => {
                 "use state_derivatives(q, v, x, t) for accelerations, columns_at(q, v, x, t) for the efforts of drives"
             }
+            FunctionId::DrivePower => {
+                "use columns_at(q, v, x, t): it is the sum of efforts of drives times rates of their motions"
+            }
+            FunctionId::Dissipation => "use simulate, whose dissipated_energy is its integral",
             _ => "use columns_at(q, v, x, t), which has what drives, pressures and joints exert",
         };
         let name = &self.live.description().name;

@@ -303,7 +303,7 @@ impl Crane {
         let description = crane.description();
         let (shape, mut rows, wrong) = self.cases(q, v, inputs, invalid)?;
         let (shape, count) = (&shape, rows.len());
-        let mut is_sound = (0..count).map(|row| wrong.iter().all(|wrong| wrong.row != row));
+        let mut is_sound = (0..count).map(|row| wrong.binary_search_by_key(&row, |wrong| wrong.row).is_err());
         rows.retain(|_| is_sound.next().unwrap_or(true));
         let settings = Settings { audit: false, ..timing.settings(description)? };
         // A step that was asked for is judged; otherwise a safe one is found.
@@ -334,9 +334,9 @@ impl Crane {
         });
         watch.finish(py)?;
         let mut outcomes = outcomes?.into_iter();
-        let outcome = |row: usize| match wrong.iter().find(|wrong| wrong.row == row) {
-            Some(wrong) => Err(wrong.reason.clone()),
-            None => outcomes.next().ok_or_else(String::new),
+        let outcome = |row: usize| match wrong.binary_search_by_key(&row, |wrong| wrong.row) {
+            Ok(place) => Err(wrong[place].reason.clone()),
+            Err(_) => outcomes.next().ok_or_else(String::new),
         };
         let outcomes: Vec<Result<ensemble::Outcome, String>> = (0..count).map(outcome).collect();
         let failure = |outcome: &Result<ensemble::Outcome, String>| match outcome {

@@ -461,7 +461,7 @@ def test_forces_with_states_say_what_to_use_instead():
         ("dissipation", lambda: boom.dissipation(q, v)),
         ("friction_forces", lambda: boom.friction_forces(v)),
     ]:
-        with pytest.raises(ValueError, match=f"{name} of eight_link_hydraulic follows from .*bristles, which are states of a run: use (state_|columns_at)"):
+        with pytest.raises(ValueError, match=f"{name} of eight_link_hydraulic follows from .*bristles, which are states of a run: use (state_|columns_at|simulate)"):
             call()
     with pytest.raises(ValueError, match=r"use state_derivatives\(q, v, x, t\)"):
         boom.strength(q, v)

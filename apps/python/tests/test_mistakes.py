@@ -51,6 +51,9 @@ def test_accelerations_that_overflow_are_refused(knuckle):
             found = of(q, v, invalid="nan")
         np.testing.assert_array_equal(found[0], knuckle.forward_dynamics(q, v[0]))
         assert np.isnan(found[1]).all()
+    for of in (lambda: knuckle.joint_states(q * np.nan), lambda: knuckle.coordinates_of({"hook_theta": np.nan})):
+        with pytest.raises(ValueError, match="write finite numbers"):
+            of()
     with pytest.raises(ValueError, match=r"frequencies=\[ 1. nan\]"):
         knuckle.state_space(q).frequency_response([1.0, np.nan])
 

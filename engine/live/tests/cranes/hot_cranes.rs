@@ -83,7 +83,8 @@ fn machine_code_follows_parameters() {
 #[test]
 fn lanes_are_the_cranes_one_by_one() {
     let crane = crane();
-    let cranes: Vec<LiveCrane> = (0..8).map(|lane| with_parameter(self::crane(), 1.0 + 1e-3 * f64::from(lane))).collect();
+    let cranes: Vec<LiveCrane> =
+        (0..8).map(|lane| with_parameter(self::crane(), 1.0 + 1e-3 * f64::from(lane))).collect();
     let expected: Vec<Vec<f64>> = cranes.iter().map(|crane| accelerations(crane, 0.1)).collect();
     let parameters: Vec<&[f64]> = cranes.iter().map(LiveCrane::parameters).collect();
     let mut block = crane.block(&parameters).unwrap();
