@@ -153,13 +153,9 @@ fn check(quantity: Quantity, crane: &LiveCrane) -> Outcome<()> {
         Some(Refusal::Loop(joint)) => format!("depends on {}", joint.closes()),
     };
     let or = if let Some(Refusal::Loop(joint)) = refusal { joint.remedy() } else { "" };
-    let instead = match quantity {
-        Quantity::Of(FunctionId::InternalForces) => "`crane strength` prints them, with all forces",
-        _ => "simulate: results contain these states and the forces",
-    };
     Err(Problem::usage(
         format!("`{}` of {} {why}", quantity.name(), crane.description().name),
-        format!("ask for other `--quantities`, or {instead}{or}"),
+        format!("ask for other `--quantities`, or simulate: results contain these states and the forces{or}"),
     ))
 }
 

@@ -304,7 +304,7 @@ class Crane(Closed, _native.Crane):
     ) -> Linearisation:
         """Coefficients of small motions: A, K, D, each (..., n, n), about poses at rest at t = 0, or about motions if v, a or t is given.
 
-        At rest K is `tangent_stiffness`. Coordinates that rigid drives prescribe do not move: in their rows and columns all three are zero, but for 1 on the
+        At rest K is `tangent_stiffness`. Coordinates that rigid drives prescribe do not move: in their rows and columns all three are zero, except for 1 on the
         diagonals of A and K, so that A is not `mass_matrix` there.
 
         About a motion K and D contain centrifugal and gyroscopic terms: `K = ∂(A a − e − f)/∂q`, `D = −∂(e + f)/∂v`. v and a are
