@@ -170,9 +170,14 @@ def test_the_page_contains_what_python_computes(specs, seed, loaded, command, tm
                 assert whole is None or shows(shown, whole), (grid["title"], row, exact)
 
 
-def test_cranes_buckle_in_python_as_the_command_prints(specs, seed, loaded, command):
+def test_cranes_carry_and_buckle_in_python_as_the_command_prints(specs, seed, loaded, command):
     crane, _ = loaded
     printed, found = json.loads(command("strength", specs(seed), "--buckling", "--format", "json")), crane.buckling()
+    forces = crane.strength().internal_forces
+    joints = [(cut["link"] or "ground", force) for cut, force in zip(crane.info["cuts"], forces) if cut["kind"] in ("ground", "joint")]
+    assert [name for name, _ in joints] == [row["joint"] for row in printed["loads"]]
+    for (name, force), row in zip(joints, printed["loads"]):
+        np.testing.assert_allclose(force, [row[of] for of in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")], rtol=0, atol=1e-9 * np.abs(forces).max(), err_msg=name)
     factors = printed["critical_factor"]
     of_path = factors["followed"] or {"factor": np.inf, "status": ""}
     assert found.followed == of_path["factor"] and found.status in (of_path["status"], "")
