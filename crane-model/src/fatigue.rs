@@ -7,9 +7,14 @@
 //! part after `N = 2·10⁶ (Δσ_c/Δσ)^m`. Damages add up, `D = Σ n/N` \[Palmgren 1924; Miner 1945]; at 1 the life is over. There is no limit
 //! below which cycles do no harm. Those of several manoeuvres add up in the same way, at the same point of the contour.
 //!
+//! Cycles are those of one place of the steel. A pad slides along the beam, so that the sections before and after it are no such place; there are places
+//! over the way that it takes instead, whose stresses are interpolated between the sections around them at each instant.
+//!
 //! The stresses are nominal ones, of the section; what a notch or a weld makes of them is the category.
 
-use crate::sections::{Place, places};
+use std::ops::Range;
+
+use crate::sections::{Place, carried, in_words, places};
 use crate::{Description, SectionModuli, Wrench};
 
 /// Cycles for which the range of a detail category is given.
@@ -20,6 +25,9 @@ pub const LEAST_LIKELY_CATEGORY: f64 = 1e5;
 
 /// Points on the rim of a round section at which stresses are counted: the largest range is off by at most 0.1 %.
 const POINTS_ON_A_RIM: usize = 72;
+
+/// Places per section over the way of a pad.
+const PER_SECTION: f64 = 4.0;
 
 /// A cycle of stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -185,7 +193,7 @@ pub struct DamagePart {
 /// What manoeuvres that repeat do to a place of a beam.
 #[derive(Clone, Debug)]
 pub struct Fatigue {
-    /// The place, as it is first.
+    /// The place, as it is first: a section, or what pads sweep, with the section before or after the pads and its own `x` and moduli.
     pub place: Place,
     /// By manoeuvre.
     pub parts: Vec<DamagePart>,
@@ -194,6 +202,17 @@ pub struct Fatigue {
 }
 
 impl Fatigue {
+    /// What is there, in words; empty where only an element begins.
+    pub fn what(&self, description: &Description) -> String {
+        let info = self.place.info(description);
+        if info.slides { format!("swept by the {}", info.at) } else { info.location() }
+    }
+
+    /// Where it is, in words: the beam, the distance from its start, and what is there.
+    pub fn location(&self, description: &Description) -> String {
+        in_words(self.place.beam(description), Some(self.place.x), self.what(description))
+    }
+
     /// How often all repetitions of all manoeuvres may be gone through until the damage is 1; `None` where there is none.
     pub fn life(&self) -> Option<f64> {
         (self.damage > 0.0).then(|| self.damage.recip())
@@ -216,23 +235,29 @@ impl Fatigue {
 }
 
 /// What manoeuvres that repeat do to every place of a crane's beams whose moduli are known, each on its own: changes from one to another do not count.
-/// The crane has the same places in all. `detail`: of each beam by the name of its link.
+/// The crane has the same places in all, and in all those that pads sweep in any of them. `detail`: of each beam by the name of its link.
 pub fn of_manoeuvres(
     description: &Description,
     manoeuvres: &[Manoeuvre<'_>],
     detail: impl Fn(&str) -> Detail,
 ) -> Vec<Fatigue> {
-    // By section, since the order of places along a beam changes where it slides.
+    let beams = description.sections_of_beams();
+    // By instant, the places of each beam.
     let in_order = |(x, wrenches): &(&[f64], &[Wrench])| {
-        let mut places = places(description, x, wrenches);
-        places.sort_by_key(|place| place.section);
-        places
+        let all = places(description, x, wrenches);
+        let of_beam = |beam: &Range<usize>| {
+            all.iter().filter(|place| beam.contains(&place.section)).copied().collect::<Vec<Place>>()
+        };
+        beams.iter().map(of_beam).collect::<Vec<_>>()
     };
-    let instants: Vec<Vec<Vec<Place>>> =
+    let instants: Vec<Vec<Vec<Vec<Place>>>> =
         manoeuvres.iter().map(|manoeuvre| manoeuvre.states.iter().map(in_order).collect()).collect();
-    let of_place = |(index, place): (usize, &Place)| {
-        let of_manoeuvre = |(manoeuvre, instants): (&Manoeuvre<'_>, &Vec<Vec<Place>>)| {
-            let at = |now: &Vec<Place>| contour(&now[index].section_moduli(manoeuvre.moduli), &now[index].wrench);
+    let of_place = |beam: usize, place: &Place| {
+        let of_manoeuvre = |(manoeuvre, instants): (&Manoeuvre<'_>, &Vec<Vec<Vec<Place>>>)| {
+            let at = |now: &Vec<Vec<Place>>| {
+                let now = at_instant(description, &now[beam], place);
+                now.map_or_else(Vec::new, |now| contour(&now.section_moduli(manoeuvre.moduli), &now.wrench))
+            };
             instants.iter().map(at).collect::<Vec<Vec<f64>>>()
         };
         let contours: Vec<Vec<Vec<f64>>> = manoeuvres.iter().zip(&instants).map(of_manoeuvre).collect();
@@ -249,13 +274,61 @@ pub fn of_manoeuvres(
         let points = contours.iter().flatten().map(Vec::len).min().unwrap_or(0);
         (0..points).map(of_point).max_by(|a, b| a.damage.total_cmp(&b.damage))
     };
-    let first = instants.first().and_then(|instants| instants.first());
-    let mut found: Vec<Fatigue> = first.into_iter().flatten().enumerate().filter_map(of_place).collect();
-    // Beam by beam, from the beginning to the end.
-    let beams = description.beams();
-    let beam = |fatigue: &Fatigue| beams.iter().position(|name| *name == fatigue.place.beam(description));
-    found.sort_by(|a, b| beam(a).cmp(&beam(b)).then(a.place.x.total_cmp(&b.place.x)));
-    found
+    let of_beam = |beam: usize| {
+        let poses: Vec<&[Place]> = instants.iter().flatten().map(|now| now[beam].as_slice()).collect();
+        let mut found: Vec<Fatigue> =
+            places_of_steel(description, &poses).iter().filter_map(|place| of_place(beam, place)).collect();
+        // From the beginning to the end. Just before and just after where a pad may be is one place: the side that suffers more.
+        found.sort_by(|a, b| a.place.x.total_cmp(&b.place.x));
+        found.dedup_by(|other, kept| {
+            let [one, two] = [&*kept, &*other].map(|of| (of.place.x, of.place.info(description)));
+            let is_one = one.1.slides && two.1.slides && one.0 == two.0 && one.1.at == two.1.at;
+            if is_one && other.damage > kept.damage {
+                std::mem::swap(other, kept);
+            }
+            is_one
+        });
+        found
+    };
+    (0..beams.len()).flat_map(of_beam).collect()
+}
+
+/// The places of the steel of a beam at which cycles are counted, from those in its poses: sections that do not slide, and, on both sides of what slides,
+/// places over its way, its ends among them.
+fn places_of_steel(description: &Description, poses: &[&[Place]]) -> Vec<Place> {
+    let Some(first) = poses.first() else { return Vec::new() };
+    let slides = |place: &&Place| place.info(description).slides;
+    let fixed: Vec<Place> = first.iter().filter(|place| !slides(place)).copied().collect();
+    let (Some(start), Some(end)) = (fixed.first(), fixed.last()) else { return fixed };
+    let section = fixed.windows(2).map(|pair| pair[1].x - pair[0].x).fold(0.0, f64::max);
+    let swept = first.iter().filter(slides).flat_map(|pad| {
+        let positions = poses.iter().filter_map(|places| Some(of_section(places, pad.section)?.x));
+        let [least, greatest] = positions
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], x| [least.min(x), greatest.max(x)])
+            .map(|x| x.clamp(start.x, end.x));
+        let intervals = (PER_SECTION * (greatest - least) / section).ceil();
+        let intervals = if intervals.is_finite() { intervals as usize } else { 0 };
+        let at = move |interval: usize| {
+            let part = if intervals == 0 { 0.0 } else { interval as f64 / intervals as f64 };
+            at_instant(description, first, &Place { x: (1.0 - part) * least + part * greatest, ..*pad })
+        };
+        (0..=intervals).filter_map(at).collect::<Vec<_>>()
+    });
+    fixed.iter().copied().chain(swept).collect()
+}
+
+/// A place of the steel in a pose, of whose places along the beam it may be one.
+fn at_instant(description: &Description, now: &[Place], place: &Place) -> Option<Place> {
+    let info = place.info(description);
+    if !info.slides {
+        return of_section(now, place.section).copied();
+    }
+    let (wrench, moduli) = carried(description, now, place.x, info.side)?;
+    Some(Place { wrench, moduli, ..*place })
+}
+
+fn of_section(places: &[Place], section: usize) -> Option<&Place> {
+    places.iter().find(|place| place.section == section)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::ops::Range;
 
-use crate::{Cut, Description, SectionInfo, SectionModuli, Stress, Wrench};
+use crate::{Cut, Description, SectionInfo, SectionModuli, Side, Stress, Wrench};
 
 /// A place of a beam in a pose, on one side of what is there, and what it carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,10 +67,14 @@ impl Place {
 /// Where a section is, in words: `x` m from the beginning of its beam. Where that differs from pose to pose and none is meant, it has no distance.
 pub fn location(description: &Description, section: usize, x: Option<f64>) -> String {
     let info = &description.sections[section];
-    let beam = description.bodies[info.body].link.to_string();
+    in_words(&description.bodies[info.body].link, x, info.location())
+}
+
+/// The beam, the distance from its start, m, and what is there, if anything is.
+pub(crate) fn in_words(beam: &str, x: Option<f64>, what: String) -> String {
     let distance = x.map(|x| format!("{x:.3} m from its start"));
-    let what = (!info.at.is_empty()).then(|| info.location());
-    [Some(beam), distance, what].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let what = Some(what).filter(|what| !what.is_empty());
+    [Some(beam.to_owned()), distance, what].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// All places of beams and ropes in a pose, beam by beam from the beginning to the end; `x` where the sections are, m, `wrenches` one per cut.
@@ -84,30 +88,45 @@ pub fn places(description: &Description, x: &[f64], wrenches: &[Wrench]) -> Vec<
     let of_beam = |beam: Range<usize>| {
         let mut order: Vec<usize> = beam.collect();
         order.sort_by(|a, b| x[*a].total_cmp(&x[*b]));
-        let place = |(position, &section): (usize, &usize)| {
-            let cut = cuts[section]?;
-            let moduli = around(description, x, &order, position);
+        let fixed: Vec<usize> =
+            order.iter().copied().filter(|section| !description.sections[*section].slides).collect();
+        let place = |&section: &usize| {
+            let (cut, slides) = (cuts[section]?, description.sections[section].slides);
+            let around = around(&fixed, |section| x[*section], x[section], Side::After).filter(|_| slides);
+            let moduli =
+                around.map_or(Between::own(section), |([one, other], part)| Between { sections: [*one, *other], part });
             Some(Place { section, cut, x: x[section], wrench: *wrenches.get(cut)?, moduli })
         };
-        order.iter().enumerate().filter_map(place).collect::<Vec<_>>()
+        order.iter().filter_map(place).collect::<Vec<_>>()
     };
     description.sections_of_beams().into_iter().flat_map(of_beam).collect()
 }
 
-/// The sections whose moduli a place has: its own, or where it slides those around it. Between them the shape changes linearly.
-fn around(description: &Description, x: &[f64], order: &[usize], position: usize) -> Between {
-    let section = order[position];
-    let fixed = |section: &&usize| !description.sections[**section].slides;
-    let before = order[..position].iter().rev().find(fixed);
-    let after = order[position..].iter().find(fixed);
-    match (description.sections[section].slides, before, after) {
-        (false, ..) | (_, None, None) => Between::own(section),
-        (_, Some(&one), None) | (_, None, Some(&one)) => Between::own(one),
-        (_, Some(&one), Some(&other)) => {
-            let way = x[other] - x[one];
-            Between { sections: [one, other], part: if way > 0.0 { (x[section] - x[one]) / way } else { 0.0 } }
-        }
+/// What is around a distance `at` in places along a beam, in their order: two places, and the part of the second; beyond an end twice the last one. Of
+/// places at the distance itself, the first has what is before it, the last what is after it.
+fn around<P>(places: &[P], x: impl Fn(&P) -> f64, at: f64, side: Side) -> Option<([&P; 2], f64)> {
+    let is_before = |place: &P| x(place) < at || (side == Side::After && x(place) == at);
+    let (before, after) = places.split_at(places.partition_point(is_before));
+    match (before.last(), after.first()) {
+        (Some(one), Some(other)) => Some(([one, other], (at - x(one)) / (x(other) - x(one)))),
+        (one, other) => one.or(other).map(|end| ([end; 2], 0.0)),
     }
+}
+
+/// What the steel of a beam carries at a distance from its beginning, m, and the sections whose moduli it has; `places`: those of the beam in a pose,
+/// in their order.
+///
+/// Between two places forces and moments are linear: exactly so, where all that acts does so at places, and to the second order in their
+/// distance with weight and inertia in between.
+pub(crate) fn carried(description: &Description, places: &[Place], at: f64, side: Side) -> Option<(Wrench, Between)> {
+    let ([one, other], part) = around(places, |place| place.x, at, side)?;
+    let wrench = Wrench {
+        force: one.wrench.force.lerp(&other.wrench.force, part),
+        moment: one.wrench.moment.lerp(&other.wrench.moment, part),
+    };
+    let fixed: Vec<&Place> = places.iter().filter(|place| !place.info(description).slides).collect();
+    let ([one, other], part) = around(&fixed, |place| place.x, at, side)?;
+    Some((wrench, Between { sections: [one.section, other.section], part }))
 }
 
 /// A place where stresses are known.

@@ -18,7 +18,7 @@ use crate::{
     quantity,
     screen::Console,
     selection::Registry,
-    strength::{self, words},
+    strength,
     variants::Edit,
 };
 
@@ -286,7 +286,7 @@ impl FatigueSubject<'_> {
 
     fn verdict(&self, report: &mut Report, worst: &Fatigue) {
         let several = self.asked.0.len() > 1;
-        let place = worst.place.location(self.description);
+        let place = worst.location(self.description);
         report.fact("greatest damage", worst.damage, "");
         report.fact_as("place_of_the_greatest_damage", "place of it", place.as_str(), "");
         let of = if several {
@@ -396,7 +396,9 @@ impl FatigueSubject<'_> {
                 of.damage.into(),
                 self.life(of).into(),
             ];
-            grid.row(words(&of.place, self.description).into_iter().chain(numbers).collect::<Vec<_>>());
+            let what = of.what(self.description);
+            let place = [of.place.beam(self.description).into(), of.place.x.into(), what.into()];
+            grid.row(place.into_iter().chain(numbers).collect::<Vec<_>>());
         }
         grid
     }
@@ -449,16 +451,29 @@ impl FatigueSubject<'_> {
         }
     }
 
-    /// The histories in columns, of the only manoeuvre.
+    /// The histories in columns, of the only manoeuvre. Places that pads sweep are numbered along the beam, and `x` is where they are.
     fn stresses(&self, found: &[Fatigue]) -> Table {
         let mut table = Table::default();
         table.add("t", "s");
-        for of in found {
-            table.add(strength::column(self.description, of.place.cut, "normal_stress"), "Pa");
+        let pads = |of: &Fatigue| {
+            let info = of.place.info(self.description);
+            info.slides.then(|| format!("{}_swept_by_{}", of.place.beam(self.description), info.at.replace(' ', "_")))
+        };
+        for (index, of) in found.iter().enumerate() {
+            let Some(pads_here) = pads(of) else {
+                table.add(strength::column(self.description, of.place.cut, "normal_stress"), "Pa");
+                continue;
+            };
+            let number = found[..=index].iter().filter(|other| pads(other).as_ref() == Some(&pads_here)).count();
+            table.add(format!("{pads_here}_{number}_x"), "m");
+            table.add(format!("{pads_here}_{number}_normal_stress"), "Pa");
         }
         let row = |(index, instant): (usize, &Instant)| {
-            let stresses = found.iter().filter_map(|of| of.parts.first()?.history.get(index));
-            [instant.t].into_iter().chain(stresses.copied()).collect()
+            let numbers = found.iter().flat_map(|of| {
+                let x = of.place.info(self.description).slides.then_some(of.place.x);
+                x.into_iter().chain(of.parts.first().and_then(|part| part.history.get(index).copied()))
+            });
+            [instant.t].into_iter().chain(numbers).collect()
         };
         table.rows = self.histories[0].iter().enumerate().map(row).collect();
         table

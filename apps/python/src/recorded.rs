@@ -139,7 +139,7 @@ pub fn fatigue_of(
             (part.damage, part.history.clone(), part.cycles.iter().map(cycle).collect())
         });
         let category = detail(beam).unwrap_or(f64::INFINITY);
-        let location = fatigue.place.location(description);
+        let location = fatigue.location(description);
         (beam.to_owned(), fatigue.place.x, location, category, fatigue.history_parameter(slope), parts.collect())
     };
     Ok(found.iter().map(of_place).collect())

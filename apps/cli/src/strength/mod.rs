@@ -31,7 +31,6 @@ use crate::{
 pub use history::column;
 use history::least_margin;
 pub use loads::parameter as load_parameter;
-pub use tables::words;
 
 /// Prints loads and stability at rest, and along the manoeuvre if asked for.
 pub fn strength(options: &Strength, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
