@@ -43,8 +43,8 @@ use crate::{
 use cylinder::{Pump, ValveCylinder};
 pub(crate) use oil::Oil;
 pub(crate) use servo::{Servo, servos, spool};
-pub(crate) use state::unassembled_at;
 pub use state::{CylinderState, cylinders_at};
+pub(crate) use state::{pressures, unassembled_at};
 use valve::flows;
 pub(crate) use valve::steepest_flow;
 

@@ -28,13 +28,8 @@ pub struct CylinderState {
 
 impl CylinderState {
     pub(crate) fn new(info: &CylinderInfo, [length, speed, arm]: [f64; 3], effort: f64) -> Self {
-        let force = effort / arm;
-        let ([piston, ring], back) = (info.areas, info.back_pressure);
-        let pressures = if force + back * (ring - piston) > 0.0 {
-            [(force + back * ring) / piston, back]
-        } else {
-            [back, (back * piston - force) / ring]
-        };
+        let (force, [piston, ring]) = (effort / arm, info.areas);
+        let pressures = pressures(info.areas, info.back_pressure, force);
         let flow = if speed > 0.0 { piston * speed } else { -ring * speed };
         CylinderState { length, speed, arm, force, pressures, flow }
     }
@@ -56,6 +51,15 @@ impl CylinderState {
         let volumes = [of_piston + piston * y, of_rod + ring * (info.stroke - y)];
         let along = piston * piston / volumes[0] + ring * ring / volumes[1];
         Some(info.bulk_modulus? * along).filter(|_| volumes.iter().all(|volume| *volume > 0.0))
+    }
+}
+
+/// Pressures on the piston's side and on the rod's with which a cylinder of these areas, m², pushes with a force, N; the lower one is given, Pa.
+pub(crate) fn pressures([piston, ring]: [f64; 2], back: f64, force: f64) -> [f64; 2] {
+    if force + back * (ring - piston) > 0.0 {
+        [(force + back * ring) / piston, back]
+    } else {
+        [back, (back * piston - force) / ring]
     }
 }
 

@@ -3,6 +3,7 @@
 use crane_quantities::{ColumnKind, PUMP, Strain};
 
 use super::{Extremes, Table, column_name, connector_force, cylinders::columns, drive_effort};
+use crate::hydraulics::pressures;
 use crate::{CoordinateInfo, CoordinateKind, CylinderInfo, Description};
 
 /// What a drive or a winch does over a run, at its joint or its rope.
@@ -47,6 +48,24 @@ pub struct CylinderDuty {
     pub flow: f64,
     /// Least and greatest distance between its pins, m.
     pub lengths: [f64; 2],
+    /// Its force, N, and the lower one of its pressures, Pa, at each result.
+    loads: Vec<[f64; 2]>,
+    /// Fastest speeds at which it extends and retracts, m/s.
+    speeds: [f64; 2],
+}
+
+impl CylinderDuty {
+    /// The highest pressure on either side of a cylinder with other areas of piston and ring, m², that exerts the same forces, Pa: the side with the lower
+    /// pressure keeps it.
+    pub fn pressure_with(&self, areas: [f64; 2]) -> f64 {
+        self.loads.iter().flat_map(|&[force, back]| pressures(areas, back, force)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The largest flow into either side of a cylinder with other areas of piston and ring, m², at the same speeds, m³/s.
+    pub fn flow_with(&self, [piston, ring]: [f64; 2]) -> f64 {
+        let [extends, retracts] = self.speeds;
+        (piston * extends).max(ring * retracts)
+    }
 }
 
 /// What the pump does over a run.
@@ -89,8 +108,11 @@ impl Duties {
             DriveDuty::new(table, &rope.name, CoordinateKind::Translation, None, &force, &shrinks)
         });
         let of_cylinder = |info: &CylinderInfo| {
+            let columns = columns(&info.name);
             let [length, speed, force, piston, rod, flow] =
-                columns(&info.name).map(|name| Extremes::of_column(table, &name));
+                columns.each_ref().map(|name| Extremes::of_column(table, name));
+            let [_, _, forces, pistons, rods, _] = columns.map(|name| column(table, &name).unwrap_or_default());
+            let lower = pistons.iter().zip(&rods).map(|(piston, rod)| piston.min(*rod));
             CylinderDuty {
                 name: info.name.to_string(),
                 push: force.maximum.max(0.0),
@@ -99,6 +121,8 @@ impl Duties {
                 speed: speed.size(),
                 flow: flow.size(),
                 lengths: [length.minimum, length.maximum],
+                loads: forces.iter().zip(lower).map(|(force, back)| [*force, back]).collect(),
+                speeds: [speed.maximum.max(0.0), (-speed.minimum).max(0.0)],
             }
         };
         Self {

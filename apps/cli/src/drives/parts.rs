@@ -262,10 +262,12 @@ impl List {
                 uses(&mut checked, "power", power / efficiency)?;
                 uses(&mut checked, "braking_power", *braking_power)?;
             }
-            Duty::Cylinder(CylinderDuty { push, pull, speed, lengths: [shortest, longest], .. }) => {
+            Duty::Cylinder(duty) => {
+                let CylinderDuty { speed, lengths: [shortest, longest], .. } = duty;
                 let (bore, rod) = (number("bore")?.unwrap_or(f64::NAN), number("rod")?.unwrap_or(0.0));
-                let [piston, annulus] = [bore * bore, bore * bore - rod * rod].map(|square| FRAC_PI_4 * square);
-                uses(&mut checked, "pressure", (push / piston).max(pull / annulus))?;
+                let areas = [bore * bore, bore * bore - rod * rod].map(|square| FRAC_PI_4 * square);
+                let pressure = duty.pressure_with(areas);
+                uses(&mut checked, "pressure", pressure)?;
                 uses(&mut checked, "speed", *speed)?;
                 let (stroke, retracted) = (number("stroke")?, number("retracted")?);
                 let of_stroke = |number| shown("stroke", number);
@@ -282,8 +284,8 @@ impl List {
                 if let Some((stroke, retracted)) = stroke.zip(retracted) {
                     checked.fits("length", [*longest, retracted + stroke], of_stroke);
                 }
-                checked.pressure = Some((push / piston).max(pull / annulus));
-                checked.flow = Some(piston * speed);
+                checked.pressure = Some(pressure);
+                checked.flow = Some(duty.flow_with(areas));
             }
             Duty::Pump(PumpDuty { flow, pressure, power, .. }) => {
                 uses(&mut checked, "flow", *flow)?;

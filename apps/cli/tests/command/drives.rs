@@ -88,6 +88,22 @@ fn duties_of_a_wheel_and_a_hoist_by_hand() {
     assert_eq!(report["parts"][0]["short_of"], serde_json::json!(["power 0.5155 of 0.5 kW"]));
 }
 
+/// With oil on the side that is not loaded, the piston of another part carries that on its own ring, too.
+#[test]
+fn parts_have_the_back_pressure_of_the_spec() {
+    let spec = LIFTED.replace("retracted: 1.3", "back_pressure: 5 bar, retracted: 1.3");
+    let report = found(&folder("back_pressure"), &spec, "part,bore [mm],rod [mm]\nsame,100,60\nthin,80,40\n");
+    let duty = &report["cylinder_duties"][0];
+    let [push, pressure, flow] = ["push", "pressure", "flow"].map(|key| duty[key].as_f64().unwrap_or(f64::NAN));
+    let parts = report["parts"].as_array().expect("a table");
+    let of = |name: &str| parts.iter().find(|row| row["part"] == name).cloned().unwrap_or_default();
+    // Of the same size, the same numbers.
+    assert_close(&of("same"), "pressure", pressure, 1e-12);
+    assert_close(&of("same"), "flow", flow, 1e-12);
+    let [piston, ring] = [0.08 * 0.08, 0.08 * 0.08 - 0.04 * 0.04].map(|square| std::f64::consts::FRAC_PI_4 * square);
+    assert_close(&of("thin"), "pressure", (push + 5e5 * ring) / piston, 1e-12);
+}
+
 /// The lever arm of the cylinder is cos((90° + θ)/2) m, its length 2 sin((90° + θ)/2) m.
 #[test]
 fn duties_of_a_cylinder_and_its_pump_by_hand() {
