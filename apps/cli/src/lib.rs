@@ -106,15 +106,12 @@ pub fn run(mut registry: Registry, console: Console, out: &mut dyn Write) -> u8 
 
 /// Reads the words of a console, as `command` describes them, and acts on them; returns the exit code.
 pub fn with_arguments<A: FromArgMatches>(
-    mut command: Command,
+    command: Command,
     console: Console,
     out: &mut dyn Write,
     act: impl FnOnce(A, &Arc<Console>, &mut dyn Write) -> Outcome<()>,
 ) -> u8 {
-    let parsed = command
-        .try_get_matches_from_mut(&console.words)
-        .and_then(|matches| A::from_arg_matches(&matches).map_err(|error| error.format(&mut command)));
-    let arguments = match parsed {
+    let arguments = match arguments::read(command, &console.words) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version arrive here too. If printing fails, there is no one to inform.

@@ -45,7 +45,7 @@ pub struct WorkPrecision {
     #[arg(long, value_name = "COUNTS|none", default_value = "1,2,3,4,6,8,12,20,30")]
     pub sections: Counts,
     /// Simulated time, s [default: from the spec]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub duration: Option<f64>,
     /// Fewer steps and tolerances, each run once, without compiling: a quick trial
     #[arg(long)]

@@ -238,7 +238,7 @@ pub struct Linearise {
     pub analysis: Analysis,
     /// Time at which to evaluate drives, loads and winches, s; driven coordinates take their prescribed rates at that time [default: 0,
     /// or that of the last row with --from]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<f64>,
     /// Hold a coordinate at a position or at a rate, in m, rad, m/s or rad/s or as an angle, as in `boom_psi=30deg` and
     /// `column_psi_rate=0.2`; the others take the pose in which they stay; may be given several times
@@ -295,25 +295,25 @@ pub struct Margins {
 #[command(next_help_heading = "Controller")]
 pub struct Controller {
     /// Proportional gain, in units of what the loop acts on per unit of what it measures
-    #[arg(long, value_name = "GAIN", default_value_t = 0.0, allow_negative_numbers = true, value_parser = finite_number)]
+    #[arg(long, value_name = "GAIN", default_value_t = 0.0, value_parser = finite_number)]
     pub p: f64,
     /// Integral gain, the same per s
-    #[arg(long, value_name = "GAIN", default_value_t = 0.0, allow_negative_numbers = true, value_parser = finite_number)]
+    #[arg(long, value_name = "GAIN", default_value_t = 0.0, value_parser = finite_number)]
     pub i: f64,
     /// Derivative gain, the same times s
-    #[arg(long, value_name = "GAIN", default_value_t = 0.0, allow_negative_numbers = true, value_parser = finite_number)]
+    #[arg(long, value_name = "GAIN", default_value_t = 0.0, value_parser = finite_number)]
     pub d: f64,
     /// Time constant of a filter of the derivative, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = duration)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = duration)]
     pub filter: f64,
     /// Time constants of numerator and denominator of a lead, s, as in `0.3,0.03`
     #[arg(long, value_name = "SECONDS,SECONDS", value_parser = two_durations)]
     pub lead: Option<[f64; 2]>,
     /// Dead time, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = duration)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = duration)]
     pub delay: f64,
     /// Time constant of a first-order lag, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = duration)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = duration)]
     pub lag: f64,
 }
 
@@ -418,7 +418,7 @@ pub struct Eval {
     #[arg(long, value_name = "NUMBERS|FILE", allow_hyphen_values = true)]
     pub v: Option<String>,
     /// Time at which the drive motions are evaluated, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = seconds)]
     pub time: f64,
     /// Output format
     #[arg(long, value_enum, default_value_t)]

@@ -7,9 +7,12 @@ mod number;
 mod poses;
 mod run;
 
-use std::path::PathBuf;
+use std::{ffi::OsStr, path::PathBuf};
 
-use clap::{Parser, Subcommand, ValueEnum, ValueHint};
+use clap::{
+    Command, FromArgMatches, Parser, Subcommand, ValueEnum, ValueHint,
+    error::{ContextKind, ContextValue},
+};
 
 use crate::screen::Manner;
 
@@ -25,6 +28,36 @@ pub use exchange::{CNumber, Export, Fmi, Import, Language, Picture};
 pub use number::seconds;
 pub use poses::{Poses, Sensitivity, Statics};
 pub use run::{Book, Compare, ComparePair, Ensemble, Page, Run, Simulate, Step, Timing};
+
+/// Reads words as the arguments of a command.
+///
+/// # Errors
+/// They are not such arguments.
+pub fn read<A: FromArgMatches>(command: Command, words: &[impl AsRef<OsStr>]) -> Result<A, clap::Error> {
+    let mut command = with_negative_numbers(command);
+    let matches = command.try_get_matches_from_mut(words.iter().map(AsRef::as_ref)).map_err(with_negative_value)?;
+    A::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+}
+
+/// With options that all take negative numbers: what reads a number says which ones are allowed.
+fn with_negative_numbers(command: Command) -> Command {
+    let with = |arg: clap::Arg| {
+        let is_option = arg.get_action().takes_values() && !arg.is_positional();
+        if is_option { arg.allow_negative_numbers(true) } else { arg }
+    };
+    command.mut_args(with).mut_subcommands(with_negative_numbers)
+}
+
+/// Says how to write a negative value with a unit, which looks like an option.
+fn with_negative_value(mut error: clap::Error) -> clap::Error {
+    let is_value =
+        |word: &str| word.strip_prefix('-').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+    if matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::String(word)) if is_value(word)) {
+        let tip = "write a negative value with a unit behind `=`, as in `--at=-5deg`".into();
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
+    }
+    error
+}
 
 const EXAMPLES: &str = "\
 Examples:

@@ -79,13 +79,13 @@ pub struct Sensitivity {
     #[arg(long, conflicts_with_all = ["largest_load", "held"])]
     pub run: bool,
     /// Simulated time with `--run`, s [default: from the spec]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds, requires = "run")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "run")]
     pub duration: Option<f64>,
     /// Interval between results with `--run`, s: extremes are those among them [default: from the spec]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds, requires = "run")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "run")]
     pub interval: Option<f64>,
     /// Error per step with `--run`, m and rad [default: 2e-5]
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = tolerance, requires = "run")]
+    #[arg(long, value_name = "NUMBER", value_parser = tolerance, requires = "run")]
     pub tolerance: Option<f64>,
     /// File for the changes, CSV with a row per number, or for the chart, SVG
     #[arg(short = 'o', long, value_name = "FILE", value_hint = ValueHint::FilePath)]

@@ -39,10 +39,10 @@ pub struct Timing {
     #[arg(long, value_name = "NAME")]
     pub method: Option<Method>,
     /// Error per step that an adaptive method accepts, m and rad [default: 2e-5]
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, value_parser = tolerance)]
+    #[arg(long, value_name = "NUMBER", value_parser = tolerance)]
     pub tolerance: Option<f64>,
     /// Largest step of rk4, s; `auto`: the largest safe step [default: from the spec]
-    #[arg(long, value_name = "SECONDS|auto", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS|auto")]
     pub step: Option<Step>,
     /// Run even if the step exceeds the largest stable step
     #[arg(long)]
@@ -51,10 +51,10 @@ pub struct Timing {
     #[arg(long)]
     pub no_verify: bool,
     /// Simulated time, s [default: from the spec]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub duration: Option<f64>,
     /// Interval between recorded results, s [default: from the spec]
-    #[arg(long, alias = "output", value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
+    #[arg(long, alias = "output", value_name = "SECONDS", value_parser = seconds)]
     pub interval: Option<f64>,
     /// Start from the last row of a CSV file of results, including velocities; drive motions start again at t = 0
     #[arg(long, value_name = "FILE.csv", value_hint = ValueHint::FilePath)]

@@ -6,14 +6,14 @@ mod html;
 
 use std::{fs, io::Write, path::Path};
 
-use clap::Parser;
+use clap::CommandFactory;
 use crane_codegen::{SourceFile, chain::Chain, exchange::xml::escaped};
 use crane_live::LiveCrane;
 use crane_model::results::cautions::BEND;
 use crane_page::diagram::diagram;
 
 use crate::{
-    arguments::{Arguments, Book},
+    arguments::{self, Arguments, Book},
     compiled::quoted,
     problem::{FAILED, Outcome, Problem},
     selection::Registry,
@@ -265,7 +265,7 @@ impl Binder<'_> {
 
 /// A command, its crane and options that were given as words of an option.
 pub fn parsed(words: &[String]) -> Outcome<Arguments> {
-    Arguments::try_parse_from(words).map_err(|error| {
+    arguments::read(Arguments::command(), words).map_err(|error| {
         let text = error.to_string();
         let lines = text.lines().take_while(|line| !line.is_empty()).map(str::trim);
         let title = lines.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned();

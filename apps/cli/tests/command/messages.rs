@@ -36,6 +36,23 @@ fn errors_are_json_where_json_is_asked_for() {
     assert_eq!(error["error"]["diagnostics"][0]["code"], "E010");
 }
 
+/// Negative values of options are read as such, so that the answer is about the value.
+#[test]
+fn negative_values_are_values() {
+    for (arguments, words) in [
+        (&["fatigue", "cantilever", "--cycles", "-5", "--category", "71MPa"][..], "above 0"),
+        (&["envelope", "cantilever", "--load-factor", "-1"], "above 0"),
+        (&["statics", "cantilever", "--bend-limit", "-1"], "--bend-limit"),
+        (&["fatigue", "cantilever", "--cycles", "1", "--category", "-71MPa"], "behind `=`"),
+        (&["fatigue", "cantilever", "--cycles", "1", "--category=-71MPa"], "above 0"),
+    ] {
+        let output = crane(arguments);
+        let error = text(&output.stderr);
+        assert!(error.contains(words) && !error.contains("-- -"), "{arguments:?}: {error}");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+}
+
 #[test]
 fn scripts_fail_on_what_they_name() {
     let code = |arguments: &[&str]| crane(arguments).status.code();
