@@ -9,6 +9,7 @@ use crane_model::{
     CoordinateKind, Description, Wrench,
     dyn_crane::DynCrane,
     modes::undamped,
+    results::ROUNDING,
     sections::{Place, StressedSection, stressed},
 };
 use crane_page::{history::Instant, tables::Case};
@@ -112,7 +113,7 @@ pub struct StressChanges {
     pub stress: f64,
     /// Of the maximum utilisation, likewise, if a beam has an allowable stress.
     pub utilisation: Option<f64>,
-    /// Of the equivalent stress at each place, and so of its utilisation; `None` where there is none.
+    /// Of the equivalent stress at each place, and so of its utilisation; `None` where there is none beyond rounding.
     pub places: Vec<Option<f64>>,
 }
 
@@ -147,7 +148,7 @@ pub fn changes_of_stress(
         let at_place = |(section, wrench): (&StressedSection, Option<Wrench>)| {
             let then = stressed(&moduli, Place { wrench: wrench?, ..section.place })?;
             let now = section.stress.equivalent;
-            (now > 0.0).then(|| change(then.stress.equivalent, now))
+            (now > ROUNDING * stress).then(|| change(then.stress.equivalent, now))
         };
         Ok(StressChanges {
             stress: change(stress_then.unwrap_or(f64::NAN), stress),

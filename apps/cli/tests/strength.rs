@@ -338,6 +338,26 @@ connectors:
     assert!(rigid["stresses"][0].get("change").is_none());
 }
 
+/// A load that hangs on a rope alone: the joints that hold it to the tip carry what rounding leaves, which has no change.
+#[test]
+fn what_is_rounding_has_no_change_with_twice_the_sections() {
+    let spec = "
+links:
+  - {name: beam, beam: {length: 2, sections: 2, material: {E: 2.1e11, G: 8.1e10, density: 7850}, section: {box: {height: 0.1, width: 0.1, thickness: 0.005}}}}
+  - {name: along, joint: {prismatic: {axis: x}}}
+  - {name: load, joint: {prismatic: {axis: z}}, mass: 100, com: [0, 0, 0]}
+connectors:
+  - {name: hoist, from: {at: [-0.5, 0, 1]}, over: [{link: beam, at: [2, 0, 0.1]}], to: {link: load, at: [0, 0, 0]}, law: {rope: {axial_stiffness: 12 MN, length: 4.2}}}
+guess: {load_z: -1.5}
+";
+    let report = strength("rounding", spec, &[]);
+    let rows = report["stresses"].as_array().expect("a table");
+    let [first, .., last] = &rows[..] else { panic!("{report}") };
+    assert_eq!(last["place"], "after the end and sheave of hoist");
+    assert!(last["equivalent"].as_f64().is_some_and(|stress| stress > 0.0 && stress < 1.0), "{last}");
+    assert!(last["change"].is_null() && first["change"].is_number(), "{first} {last}");
+}
+
 /// About three tonnes more than the boom can carry.
 #[test]
 fn a_boom_that_yields_gets_a_caution() {
@@ -554,6 +574,130 @@ run: {duration: 8, output: 0.02}
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(text.contains(wanted), "{also}: {text}");
     }
+}
+
+/// A stage of 3.8 m whose rear pad is at its start, and its front pad where the other beam ends, a load of 10 kN at its tip. The steel is worst off where
+/// the front pad ends: there the moment is that of the overhang, and when the pad is elsewhere less, in proportion to the way from the rear pad.
+#[test]
+fn steel_that_a_pad_sweeps_is_counted_where_it_is() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("swept");
+    fs::create_dir_all(&folder).expect("a folder");
+    let beam = |length: f64, box_of: &str, more: &str| {
+        format!(
+            "beam: {{length: {length}, sections: 4, material: {{E: 210 GPa, G: 81 GPa, density: 7850}}, section: {{box: {box_of}}}, damping: {{beta: 5 ms}}{more}}}"
+        )
+    };
+    let pads = ", slides_in: {beam: boom, overlap: 3.5, pads: {front: {stiffness: [200 kN/mm, 200 kN/mm, 4e6], damping: [200 kN s/m, 200 kN s/m, 4e3]}, \
+                rear: {stiffness: [200 kN/mm, 200 kN/mm, 0], damping: [200 kN s/m, 200 kN s/m, 0]}}}";
+    let spec = |name: &str, motion: &str, scale: &str| {
+        let path = folder.join(name);
+        let text = format!(
+            "format: 1\nname: swept\ngravity: [0, 0, 0]\nlinks:\n- {{name: boom, {}}}\n- {{name: stage, joint: {{prismatic: {{axis: x}}}}, {}}}\n\
+             loads: [{{name: tip, link: stage, at: [3.8, 0, 0], force: [0, -10000, 0]{scale}}}]\n\
+             drives: [{{coordinate: stage_x, stiffness: 2e7, damping: 2e5, motion: {motion}}}]\nrun: {{duration: 20, output: 0.1}}\n",
+            beam(4.0, "{height: 300 mm, width: 220 mm, thickness: 8 mm}", ""),
+            beam(3.8, "{height: 260 mm, width: 180 mm, thickness: 7 mm}", pads),
+        );
+        fs::write(&path, text).expect("a file");
+        path.to_str().expect("a path").to_owned()
+    };
+    let run = |arguments: &[&str]| -> Value {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+        command.arg("fatigue").args(arguments).args(["--cycles", "1e5", "--category", "71MPa", "--format", "json"]);
+        let output = command.output().expect("it starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    let modulus = (0.18 * 0.26_f64.powi(3) - 0.166 * 0.246_f64.powi(3)) / 12.0 / 0.13;
+    // Of a tip load with the front pad at `pad` m, where it is or between both pads.
+    let stress = |pad: f64, x: f64| 1e4 * (3.8 - pad) * x / pad / modulus;
+    let damage = |range: f64| 1e5 / 2e6 * (range / 71e6).powi(3);
+    // The drive yields by a micrometre, and the motion has ended as slowly as the beam follows: 2e-4 of the range.
+    let out = folder.join("out.csv");
+    let found = run(&[
+        &spec("moved.yaml", "{cubic: {from: 0.4, to: 2.4, duration: 20}}", ""),
+        "-o",
+        out.to_str().expect("a path"),
+    ]);
+    let range = stress(1.1, 1.1) - stress(3.1, 1.1);
+    assert_close("range", &found["greatest_range"], range, 2e-4);
+    assert_close("damage", &found["greatest_damage"], damage(range), 6e-4);
+    assert_eq!(found["place_of_the_greatest_damage"], "stage, 1.100 m from its start, swept by the pads stage_front");
+    let places = found["fatigue"].as_array().expect("a table");
+    let of =
+        |what: &str| places.iter().filter(|row| row["beam"] == "stage" && row["place"] == what).collect::<Vec<_>>();
+    assert!(of("before the pads stage_front").is_empty() && of("after the pads stage_front").is_empty());
+    // Sections are 0.95 m long: 2 m are 9 intervals of less than a quarter.
+    assert_eq!(of("swept by the pads stage_front").len(), 10);
+    let header = fs::read_to_string(&out).expect("a table");
+    assert!(
+        header.starts_with("t [s],") && header.contains("stage_swept_by_pads_stage_front_10_normal_stress"),
+        "{header}"
+    );
+    // Another manoeuvre with the pad elsewhere adds its damage to the same steel.
+    let scale = ", scale: {table: {times: [0, 10, 20], values: [0, 1, 0]}}";
+    let [out, half] =
+        [("out.yaml", 2.4), ("half.yaml", 1.4)].map(|(name, x)| spec(name, &format!("{{hold: {x}}}"), scale));
+    let found = run(&[&out, "--also", &format!("{half}=1e5")]);
+    let rows = found["fatigue"].as_array().expect("a table");
+    let both = rows.iter().filter(|row| row["place"] == "swept by the pads stage_front").max_by(|a, b| {
+        let [a, b] = [a, b].map(|row| row["damage"].as_f64().unwrap_or(f64::NAN));
+        a.total_cmp(&b)
+    });
+    let both = both.expect("a place");
+    assert_close("place", &both["x"], 1.1, 2e-3);
+    assert_close("both", &both["damage"], damage(stress(1.1, 1.1)) + damage(stress(2.1, 1.1)), 2e-3);
+}
+
+/// A four-bar that is cut at the pin of its rocker on the ground, and at that on its coupler, has the same factors.
+#[test]
+fn factors_do_not_depend_on_where_a_loop_is_cut() {
+    let spec = |rest: &str| {
+        format!(
+            "format: 1\nname: four_bar\nlinks:
+- {{name: base}}
+- {{name: crank, on: base, placement: {{transform: {{rotation: {{x: 90 deg}}}}}}, joint: revolute, mass: 3, com: [0.2, 0, 0], inertia: {{Ixx: 0.01, Iyy: 0.04, Izz: 0.04}}}}
+- {{name: coupler, placement: {{transform: {{translation: [0.4, 0, 0]}}}}, joint: revolute, mass: 5, com: [0.5, 0, 0], inertia: {{Ixx: 0.1, Iyy: 0.5, Izz: 0.5}}}}
+{rest}
+drives: [{{coordinate: crank_psi, rigid: true, motion: {{quintic: {{from: 45 deg, to: 120 deg, duration: 0.5}}}}}}]
+run: {{duration: 0.5, output: 0.002}}\n"
+        )
+    };
+    let rocker = "mass: 6, com: [0.45, 0, 0], inertia: {Ixx: 0.1, Iyy: 0.4, Izz: 0.4}";
+    let at_ground = format!(
+        "- {{name: rocker, placement: {{transform: {{translation: [1.1, 0, 0]}}}}, joint: revolute, {rocker}}}
+loop_joints: [{{name: g, from: {{at: [1.2, 0, 0]}}, to: {{link: rocker, at: [0.9, 0, 0]}}, joint: {{pin: {{axis: [0, 1, 0], to_axis: [0, 0, 1]}}}}}}]
+guess: {{coupler_psi: -12 deg, rocker_psi: -120 deg}}"
+    );
+    let at_coupler = format!(
+        "- {{name: rocker, on: base, placement: {{transform: {{translation: [1.2, 0, 0], rotation: {{x: 90 deg}}}}}}, joint: revolute, {}}}
+loop_joints: [{{name: g, from: {{link: coupler, at: [1.1, 0, 0]}}, to: {{link: rocker, at: [0.9, 0, 0]}}, joint: {{pin: {{axis: [0, 0, 1]}}}}}}]
+guess: {{coupler_psi: -12 deg, rocker_psi: 110 deg}}",
+        rocker
+    );
+    let report = |name: &str, rest: &str| {
+        let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+        fs::write(&file, spec(rest)).expect("a file");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_crane"));
+        let output = command.arg("factors").arg(&file).args(["--tolerance", "1e-8", "--format", "json"]).output();
+        let output = output.expect("it starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<Value>(&output.stdout).expect("JSON")
+    };
+    let [ground, coupler] = [report("at_ground.yaml", &at_ground), report("at_coupler.yaml", &at_coupler)];
+    let factor = |report: &Value, quantity: &str| {
+        let rows = report["factors"].as_array().expect("a table");
+        rows.iter().find(|row| row["quantity"] == quantity).expect("a quantity")["factor"].clone()
+    };
+    // Of the two pins, each has its factor wherever the loop is cut. The runs differ by errors of 1e-8 per step.
+    for (one, other) in [("rocker", "g"), ("g", "rocker"), ("coupler", "coupler"), ("crank", "crank")] {
+        let [one, other] = [(&ground, one), (&coupler, other)]
+            .map(|(report, joint)| factor(report, &format!("force of joint {joint}")));
+        assert_close("pin", &other, one.as_f64().expect("a number"), 1e-5);
+    }
+    assert_close("greatest", &coupler["greatest_factor"], ground["greatest_factor"].as_f64().expect("a number"), 1e-5);
+    // A component depends on the axes of its joint.
+    assert!(factor(&ground, "g_force_x").is_null() && factor(&ground, "g_force_z").is_null());
 }
 
 /// A load that comes at once onto a spring without damping lets it swing by as much as it deflects: (M + 2m)/(M + m) of the force at rest.

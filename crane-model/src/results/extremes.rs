@@ -19,10 +19,14 @@ impl Extremes {
     /// Extremes of the column with this name; zeros if there is none.
     pub fn of_column(table: &Table, name: &str) -> Self {
         let Some(values) = table.values(name) else { return Self::default() };
-        let mut times = table.rows.iter().map(|row| row[0]).zip(values);
-        let Some((t, first)) = times.next() else { return Self::default() };
+        Self::over(table.rows.iter().map(|row| row[0]).zip(values))
+    }
+
+    /// Extremes of values behind their times, s; zeros if there are none.
+    pub fn over(mut values: impl Iterator<Item = (f64, f64)>) -> Self {
+        let Some((t, first)) = values.next() else { return Self::default() };
         let mut extremes = Self::at(t, first);
-        times.for_each(|(t, value)| extremes.widen(t, value));
+        values.for_each(|(t, value)| extremes.widen(t, value));
         extremes
     }
 

@@ -4,6 +4,9 @@ use crane_quantities::{ColumnKind, Size};
 
 use super::{Column, Extremes, Table};
 
+/// What is less than this part of the largest of its kind is rounding.
+pub const ROUNDING: f64 = 1e-9;
+
 /// Columns of one kind, whose sizes are comparable.
 #[derive(Clone, Debug)]
 pub struct Kind {
@@ -38,8 +41,6 @@ impl Kind {
     pub fn noise(&self, table: &Table, name: &str, force: f64) -> f64 {
         /// Fraction of the largest value.
         const NOISE: f64 = 1e-6;
-        /// The same for forces and moments.
-        const ROUNDING: f64 = 1e-9;
         match (self.size, self.unit.as_str()) {
             (Size::Peak, "N" | "N m") => ROUNDING * force,
             (Size::Peak, _) => 0.0,

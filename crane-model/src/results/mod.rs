@@ -25,7 +25,7 @@ pub use cylinders::{HighestPressure, beyond_stroke, highest_pressure};
 pub use duties::{CylinderDuty, DriveDuty, Duties, PumpDuty};
 pub use extremes::Extremes;
 pub use feet::{Lift, Pull, TipsOver, lifts, pulls, tips_over, vertical_reaction};
-pub use headlines::{Kind, headlines};
+pub use headlines::{Kind, ROUNDING, headlines};
 pub use history::{Instant, instants, stressed_over};
 pub use key_figures::KeyFigure;
 pub use peaks::Peaks;
