@@ -7,7 +7,7 @@
 //! part after `N = 2·10⁶ (Δσ_c/Δσ)^m`. Damages add up, `D = Σ n/N` \[Palmgren 1924; Miner 1945]; at 1 the life is over. There is no limit
 //! below which cycles do no harm. Those of several manoeuvres add up in the same way, at the same point of the contour.
 //!
-//! Cycles are those of one place of the steel. A pad slides along the beam, so that the sections before and after it are no such place; there are places
+//! Cycles are those of one place of the steel. A pad slides along the beam, so that the sections before and after it are not such a place. There are places
 //! over the way that it takes instead, whose stresses are interpolated between the sections around them at each instant.
 //!
 //! The stresses are nominal ones, of the section; what a notch or a weld makes of them is the category.
@@ -27,7 +27,7 @@ pub const LEAST_LIKELY_CATEGORY: f64 = 1e5;
 const POINTS_ON_A_RIM: usize = 72;
 
 /// Places per section over the way of a pad.
-const PER_SECTION: f64 = 4.0;
+const PER_SECTION: usize = 4;
 
 /// A cycle of stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -305,11 +305,11 @@ fn places_of_steel(description: &Description, poses: &[&[Place]]) -> Vec<Place> 
         let positions = poses.iter().filter_map(|places| Some(of_section(places, pad.section)?.x));
         let [least, greatest] = positions
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], x| [least.min(x), greatest.max(x)])
-            .map(|x| x.clamp(start.x, end.x));
-        let intervals = (PER_SECTION * (greatest - least) / section).ceil();
-        let intervals = if intervals.is_finite() { intervals as usize } else { 0 };
+            .map(|x| x.max(start.x).min(end.x));
+        let is_within = |interval: &usize| *interval as f64 * section < PER_SECTION as f64 * (greatest - least);
+        let intervals = (0..PER_SECTION * fixed.len()).take_while(is_within).count();
         let at = move |interval: usize| {
-            let part = if intervals == 0 { 0.0 } else { interval as f64 / intervals as f64 };
+            let part = interval as f64 / intervals.max(1) as f64;
             at_instant(description, first, &Place { x: (1.0 - part) * least + part * greatest, ..*pad })
         };
         (0..=intervals).filter_map(at).collect::<Vec<_>>()

@@ -670,10 +670,9 @@ loop_joints: [{{name: g, from: {{at: [1.2, 0, 0]}}, to: {{link: rocker, at: [0.9
 guess: {{coupler_psi: -12 deg, rocker_psi: -120 deg}}"
     );
     let at_coupler = format!(
-        "- {{name: rocker, on: base, placement: {{transform: {{translation: [1.2, 0, 0], rotation: {{x: 90 deg}}}}}}, joint: revolute, {}}}
+        "- {{name: rocker, on: base, placement: {{transform: {{translation: [1.2, 0, 0], rotation: {{x: 90 deg}}}}}}, joint: revolute, {rocker}}}
 loop_joints: [{{name: g, from: {{link: coupler, at: [1.1, 0, 0]}}, to: {{link: rocker, at: [0.9, 0, 0]}}, joint: {{pin: {{axis: [0, 0, 1]}}}}}}]
-guess: {{coupler_psi: -12 deg, rocker_psi: 110 deg}}",
-        rocker
+guess: {{coupler_psi: -12 deg, rocker_psi: 110 deg}}"
     );
     let report = |name: &str, rest: &str| {
         let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
