@@ -104,12 +104,6 @@ pub fn moments(crane: &dyn DynCrane, t: f64, motion: [&[f64]; 3], feet: [usize; 
     loads_of_links(crane, t, motion).into_iter().map(of_link).collect()
 }
 
-/// Weight and loads of the crane at rest in pose `q` at t = 0, N.
-pub(crate) fn total_load(crane: &dyn DynCrane, q: &[f64]) -> Vector3<f64> {
-    let rest = vec![0.0; q.len()];
-    loads_of_links(crane, 0.0, [q, &rest, &rest]).into_iter().map(|(_, load)| load.force).sum()
-}
-
 /// Moment of a load about the line through two points, positive if it holds the crane down: a load within the polygon turns the crane clockwise about
 /// the line, and so against the ground.
 fn held([from, to]: [Vector3<f64>; 2], load: &Wrench) -> f64 {

@@ -1,12 +1,9 @@
 //! Load charts: the largest load within limits over the positions of one or two drives.
 
-use crane_live::LiveCrane;
+use crane_live::{LiveCrane, Reach};
 use crane_model::{
     dyn_crane::{DynCrane, Functions},
-    envelope::{
-        Axes, Axis, Envelope, Execution, Limit, Limits, Rating, SlewAxis, Varied, is_load, only_mass, only_point,
-        range_of_loads,
-    },
+    envelope::{Axes, Axis, Envelope, Execution, Limit, Limits, Rating, Varied, is_load, only_mass, range_of_loads},
 };
 use serde_json::{Value, json};
 
@@ -34,10 +31,9 @@ pub fn chart(crane: &LiveCrane, wanted: &Wanted) -> Outcome<Value> {
         None => only_mass(description),
     };
     let load = load.ok_or("choose the live parameter that is the load: a mass, a force, a moment or a factor")?;
-    let point = match &wanted.point {
-        Some(name) => description.points.iter().position(|own| own == name.as_str()),
-        None => only_point(description),
-    };
+    let point = wanted.point.as_ref();
+    let point = point.and_then(|name| description.points.iter().position(|own| own == name.as_str()));
+    let reach = Reach::new(crane.chain(), crane.parameters(), Some(load), point);
     let axes = axes(&wanted.ranges, description.drives.len())?;
     let limits = Limits::usual(description);
     let loads = range_of_loads(crane, load, None);
@@ -53,24 +49,24 @@ pub fn chart(crane: &LiveCrane, wanted: &Wanted) -> Outcome<Value> {
     envelope
         .run(crane, &pieces, &Execution { threads: 1, done: &done, cancelled: &|| false })
         .map_err(|refused| refused.to_string())?;
-    let slewing = SlewAxis::new(crane as &dyn DynCrane);
     let row = |(pose, rating): (usize, &Option<Rating>)| {
         let rating = rating.as_ref()?;
-        let place = point.and_then(|point| Some(*rating.loaded.as_ref()?.points.get(point)?));
+        let parameters = envelope.axes.parameters(crane, pose);
+        let place = rating.loaded.as_ref().map(|at| reach.radius_and_height(&at.q, &parameters));
         Some(json!({
             "at": envelope.axes.values(pose),
             "load": rating.load,
             "limit": rating.governing.map(Limit::kind),
             "where": rating.governing.map(|limit| limit.location(crane as &dyn DynCrane)),
-            "radius": place.map(|place| slewing.radius(&place)),
-            "height": place.map(|place| place.z),
+            "radius": place.map(|[radius, _]| radius),
+            "height": place.map(|[_, height]| height),
         }))
     };
     let rated = rated.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let poses: Vec<Value> = rated.iter().enumerate().filter_map(row).collect();
     let info = &description.parameters[load];
     Ok(json!({
-        "poses": poses, "load": info.name.as_str(), "unit": info.unit.as_str(), "point": point.map(|point| description.points[point].as_str()),
+        "poses": poses, "load": info.name.as_str(), "unit": info.unit.as_str(), "point": reach.point(), "radius_from": reach.axis(),
     }))
 }
 

@@ -51,7 +51,7 @@ pub enum Request {
         positions: Vec<f64>,
         /// Name of the parameter that is the load; the only one in kg if there is none.
         load: Option<String>,
-        /// Point whose radius and height are shown; the first if there is none.
+        /// Point whose radius and height are shown; that of the load if there is none.
         point: Option<String>,
         /// What is varied, one or two drives.
         ranges: Vec<Range>,

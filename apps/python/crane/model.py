@@ -624,7 +624,7 @@ class Crane(Closed, _native.Crane):
         efforts: maximum torque or force of drives, N m and N. deflections: how far the load may move points of interest, m.
         lift_off: every support carries something; slack_ropes: all ropes are taut.
         load_factor: the load is multiplied by it before it is compared with the limits, as for a test load or a dynamic factor.
-        point: the one whose radius and height are given; the only one, or the origin of the last link unless given.
+        point: the one whose radius and height are given; unless given, the only one on what carries the load, otherwise the load's centre of mass.
         `progress(done, all)` is called from time to time.
         """
         ranges = by_name("ranges", ranges, '{"boom": np.radians([0, 30, 60])}')

@@ -256,8 +256,8 @@ class Envelope:
     "deflection", "equilibrium", or "" up to the maximum load considered. governing_of: (...), the tipping line, section, cylinder, drive,
     support, rope or point.
     considered, not_considered: limits that were, and those that were not or that lack a number, in words.
-    radius, height: (...), m, of the point, from the slewing axis and above the world's origin, with the largest load; with the minimum load
-    where there is no largest one.
+    radius, height: (...), m, of `point`, from the axis `radius_from` and above the world's origin, with the largest load; with the minimum load
+    where there is no largest one. point: its name, or words such as "the centre of mass of log". radius_from: such as "the axis of column_psi".
     q: (..., n), pose with the same load, m and rad.
     tipping_margin, utilisation: (...), with the crane's own load. drive_efforts: (..., drives), N m and N, with that load.
     deflections: (..., points), m, by which that load moves the points of interest.
@@ -269,6 +269,8 @@ class Envelope:
     unit: str
     governing: Words
     governing_of: Words
+    point: str
+    radius_from: str
     radius: Array
     height: Array
     q: Array

@@ -2,11 +2,12 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use crane_live::Reach;
 use crane_model::Description;
 use crane_model::dyn_crane::DynCrane;
 use crane_model::envelope::{
-    Axes, Axis, Condition, Coverage, Envelope, Execution, Limit, Limits, PartLimit, Rating, SlewAxis, Varied, is_load,
-    only_mass, only_point, range_of_loads,
+    Axes, Axis, Condition, Coverage, Envelope, Execution, Limit, Limits, PartLimit, Rating, Varied, is_load, only_mass,
+    range_of_loads,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -67,8 +68,8 @@ impl Crane {
         let crane: &dyn DynCrane = &self.live;
         let description = crane.description();
         let point = asked.point.as_deref().map(|name| index_of(name, "point", &points(description))).transpose()?;
-        let point = point.or(only_point(description));
         let envelope = asked.envelope(crane)?;
+        let reach = Reach::new(self.live.chain(), self.live.parameters(), Some(envelope.load), point);
         let poses = envelope.axes.poses();
         let ratings: Mutex<Vec<Option<Rating>>> = Mutex::new(vec![None; poses]);
         let watch = Watch::reporting(progress, poses);
@@ -89,9 +90,8 @@ impl Crane {
         run.map_err(|refused| PyValueError::new_err(refused.to_string()))?;
         let ratings = ratings.into_inner().unwrap_or_else(PoisonError::into_inner);
         let ratings: Vec<Rating> = ratings.into_iter().flatten().collect();
-        let all = Named { crane, slew: SlewAxis::new(crane), point, shape: axes_shape(&envelope) }
-            .all(py, &envelope, &ratings)?;
-        let coverage = Coverage::new(crane, &envelope.limits);
+        let all = Named { crane, reach, shape: axes_shape(&envelope) }.all(py, &envelope, &ratings)?;
+        let coverage = Coverage::new(crane, &envelope.limits, self.live.gravity());
         all.set_item("considered", coverage.considered)?;
         all.set_item("not_considered", coverage.not_considered)?;
         Ok(all.into())
@@ -186,8 +186,7 @@ impl ChartRequest {
 /// Ratings as arrays.
 struct Named<'a> {
     crane: &'a dyn DynCrane,
-    slew: SlewAxis,
-    point: Option<usize>,
+    reach: Reach,
     shape: Vec<usize>,
 }
 
@@ -197,11 +196,17 @@ impl Named<'_> {
         let numbers = |of: &dyn Fn(&Rating) -> Option<f64>| {
             array(py, ratings.iter().map(|rating| of(rating).unwrap_or(f64::NAN)).collect(), &self.shape, &[])
         };
-        let position =
-            |rating: &Rating| rating.loaded.as_ref().map(|at| self.point.map_or(at.end, |point| at.points[point]));
+        let place = |(pose, rating): (usize, &Rating)| {
+            let parameters = envelope.axes.parameters(self.crane, pose);
+            rating.loaded.as_ref().map_or([f64::NAN; 2], |at| self.reach.radius_and_height(&at.q, &parameters))
+        };
+        let places: Vec<[f64; 2]> = ratings.iter().enumerate().map(place).collect();
+        for (key, index) in [("radius", 0), ("height", 1)] {
+            all.set_item(key, array(py, places.iter().map(|place| place[index]).collect(), &self.shape, &[])?)?;
+        }
+        all.set_item("point", self.reach.point())?;
+        all.set_item("radius_from", self.reach.axis())?;
         all.set_item("load", numbers(&|rating| rating.load)?)?;
-        all.set_item("radius", numbers(&|rating| Some(self.slew.radius(&position(rating)?)))?)?;
-        all.set_item("height", numbers(&|rating| Some(position(rating)?.z))?)?;
         all.set_item("tipping_margin", numbers(&|rating| rating.with_spec_load.as_ref()?.margin())?)?;
         all.set_item("utilisation", numbers(&|rating| rating.with_spec_load.as_ref()?.utilisation())?)?;
         let n = description.coordinates.len();

@@ -17,12 +17,13 @@ export function chart({ chart, load_chart: facts, crane }) {
 }
 
 /** Crane, load, parameters and limits of a chart. */
-function card({ crane: name, load, parameters, limits, spec_hash: hash, cautions, poses }, { title }) {
+function card({ crane: name, load, parameters, limits, spec_hash: hash, cautions, poses, point, radius_from: axis }, { title }) {
   const given = Object.entries(parameters ?? {}).map(([name, value]) => `${name} = ${readable(value)}`);
   const rows = [
     ["crane", [`${title} (${name})`]],
     ["load", [spoken(load)]],
     ["other parameters", given],
+    ["point", point ? [`${spoken(point)}, its radius from ${spoken(axis)}`] : []],
     ["limits", limits?.considered ?? []],
     ["not considered", limits?.not_considered ?? []],
     ["cautions", cautions ?? []],

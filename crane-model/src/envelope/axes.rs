@@ -91,7 +91,7 @@ impl Axes {
     }
 
     /// Parameters of a crane for a combination, in the order of the description.
-    pub(super) fn parameters(&self, crane: &dyn DynCrane, pose: usize) -> Vec<f64> {
+    pub fn parameters(&self, crane: &dyn DynCrane, pose: usize) -> Vec<f64> {
         let mut parameters: Vec<f64> =
             (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
         for (axis, value) in self.0.iter().zip(self.values(pose)) {

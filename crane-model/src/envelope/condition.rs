@@ -37,8 +37,6 @@ pub struct Condition {
     pub overlaps: Vec<(usize, [f64; 2])>,
     /// Positions of the points of interest, m.
     pub points: Vec<Vector3<f64>>,
-    /// Origin of the last body's frame, m.
-    pub end: Vector3<f64>,
 }
 
 impl Condition {
@@ -69,10 +67,6 @@ impl Condition {
                 .map(|(stage, overlap)| (stage.inner, [overlap.inside, overlap.left()]))
                 .collect(),
             points: crane.points_at(&q),
-            end: crane
-                .transforms_at(&q)
-                .last()
-                .map_or_else(Vector3::zeros, |last| last.fixed_view::<3, 1>(0, 3).into()),
             q,
         }
     }

@@ -1,6 +1,7 @@
 //! What a load chart takes into account, in words that stand beside it.
 
 use crane_quantities::DisplayUnit;
+use nalgebra::Vector3;
 
 use super::{Limits, PartLimit};
 use crate::{CylinderInfo, Description, dyn_crane::DynCrane, tipping};
@@ -22,8 +23,8 @@ const NEVER: [&str; 3] = ["motion", "buckling and fatigue", "hook and slings"];
 const SLOPE: f64 = 1e-9;
 
 impl Coverage {
-    /// Of some limits of a crane.
-    pub fn new(crane: &dyn DynCrane, limits: &Limits) -> Self {
+    /// Of some limits of a crane. `gravity`: its acceleration in the world frame, m/s².
+    pub fn new(crane: &dyn DynCrane, limits: &Limits, gravity: [f64; 3]) -> Self {
         let description = crane.description();
         let mut found = Self { considered: vec!["a stable equilibrium".to_owned()], ..Self::default() };
         found.ground(crane, limits);
@@ -37,7 +38,7 @@ impl Coverage {
         {
             found.add(true, format!("the load moves {point} by at most {deflection} m"));
         }
-        found.surroundings(crane);
+        found.surroundings(description, gravity);
         found.not_considered.extend(NEVER.map(str::to_owned));
         found
     }
@@ -192,16 +193,15 @@ impl Coverage {
     }
 
     /// What acts on the crane besides its weight.
-    fn surroundings(&mut self, crane: &dyn DynCrane) {
-        let loads: Vec<&str> = crane.description().loads.iter().map(|load| load.name.as_str()).collect();
-        if !loads.is_empty() {
+    fn surroundings(&mut self, description: &Description, gravity: [f64; 3]) {
+        let loads: Vec<&str> = description.loads.iter().map(|load| load.name.as_str()).collect();
+        if loads.is_empty() {
+            self.add(false, "wind: the spec has no loads".to_owned());
+        } else {
             self.add(true, format!("the loads {}, as at the beginning of a run", loads.join(", ")));
-            self.add(false, "a slope of the ground, unless the spec has one".to_owned());
-            return;
         }
-        self.add(false, "wind: the spec has no loads".to_owned());
-        let weight = tipping::total_load(crane, &crane.guess());
-        let slope = weight.xy().norm() / weight.norm();
+        let gravity = Vector3::from(gravity);
+        let slope = gravity.xy().norm() / gravity.norm();
         if slope > SLOPE {
             self.add(true, format!("a slope of the ground of {:.2}°", slope.asin().to_degrees()));
         } else {

@@ -7,7 +7,7 @@ use crane_codegen::SourceFile;
 use crane_live::LiveCrane;
 use crane_model::{
     dyn_crane::{DynCrane, Functions},
-    envelope::{Axes, Axis, Envelope, Execution, Limit, Limits, Rating, SlewAxis, Varied},
+    envelope::{Axes, Axis, Envelope, Execution, Limit, Limits, Rating, Varied},
     statics::Settings,
 };
 
@@ -70,19 +70,6 @@ fn a_slewing_load_is_limited_by_the_nearest_tipping_line() {
         let left = rating.loaded.as_ref().unwrap().margin().unwrap() - margin;
         assert!((0.0..2e-6).contains(&left), "never beyond the limit: {left}");
     }
-}
-
-#[test]
-fn the_slewing_axis_is_found_where_it_stands() {
-    // Also where the joint's own axis points downwards. The numbers are some roundings of lengths of order 1.
-    for turned in ["", ", rotation: {x: 180 deg}"] {
-        let truck = TRUCK.replace("translation: [0.25, 0, 1]", &format!("translation: [0.25, 0, 1]{turned}"));
-        let SlewAxis { drive, at } = SlewAxis::new(&crane(&truck));
-        assert_eq!(drive, Some(0), "{turned}");
-        assert!((at[0] - 0.25).abs() < 1e-12 && at[1].abs() < 1e-12, "{turned}: {at:?}");
-    }
-    let boom = crane(&TRUCK.replace("translation: [0.25, 0, 1]", "translation: [0.25, 0, 1], rotation: {x: 90 deg}"));
-    assert_eq!(SlewAxis::new(&boom), SlewAxis { drive: None, at: [0.0, 0.0] });
 }
 
 /// A massless boom of 4 m over the ground, lifted by a drive; its load is a point.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use crane_codegen::SourceFile;
-use crane_live::LiveCrane;
+use crane_live::{LiveCrane, Reach};
 use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::dynamics::{InitialState, Method, Settings};
 use crane_model::envelope::{
@@ -372,18 +372,23 @@ impl Found {
 
     /// Loads that a chart gives, that lift a foot and that tip the crane, and factors of all loads.
     fn loads(&mut self, crane: &LiveCrane) {
-        if let Some(load) = only_mass(crane.description()) {
+        if let Some(index) = only_mass(crane.description()) {
             let rating = rated(crane);
             if let Some(limit) = rating.as_ref().and_then(|rating| rating.governing) {
                 self.add(LOADS, format!("governed by {}", limit.kind()), "", 1.0);
             }
-            if let Some(load) = rating.and_then(|rating| rating.load) {
+            if let Some(Rating { load: Some(load), loaded: Some(loaded), .. }) = rating {
                 self.add(LOADS, "load of a chart", "kg", load);
+                let reach = Reach::new(crane.chain(), crane.parameters(), Some(index), None);
+                let place = reach.radius_and_height(&loaded.q, crane.parameters());
+                for (name, number) in ["radius of a chart", "height of a chart"].into_iter().zip(place) {
+                    self.add(LOADS, name, "m", number);
+                }
             }
             for (name, critical) in
                 [("load that lifts a foot", Critical::FirstFoot), ("load that tips", Critical::Tipping)]
             {
-                if let Ok(critical_load) = critical_load(&mut crane.clone(), load, critical) {
+                if let Ok(critical_load) = critical_load(&mut crane.clone(), index, critical) {
                     self.add(LOADS, name, "kg", critical_load.load);
                 }
             }

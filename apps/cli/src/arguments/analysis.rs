@@ -156,7 +156,7 @@ pub struct Envelope {
     pub ranges: Vec<String>,
     #[command(flatten)]
     pub limits: LoadLimits,
-    /// Point whose radius and height are shown [default: the only point of interest, otherwise the origin of the last link]
+    /// Point whose radius and height are shown [default: the only one on what carries the load, otherwise the load's centre of mass]
     #[arg(long, value_name = "POINT")]
     pub point: Option<String>,
     /// Radii of the load chart, m, as in `4,6,8.5` [default: round ones]

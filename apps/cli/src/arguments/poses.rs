@@ -29,8 +29,8 @@ pub struct Poses {
     /// may be given several times
     #[arg(long = "range", value_name = "NAME=FROM:TO:COUNT", allow_hyphen_values = true)]
     pub ranges: Vec<String>,
-    /// Point whose radius and height are shown with `--range` [default: the only point of interest, otherwise the origin of the last
-    /// link]
+    /// Point whose radius, height and deflection are shown with `--range` [default: the only one on what carries the load, otherwise the
+    /// load's centre of mass]
     #[arg(long, value_name = "POINT", requires = "ranges")]
     pub point: Option<String>,
 }
@@ -70,8 +70,8 @@ pub struct Sensitivity {
     pub largest_load: bool,
     #[command(flatten, next_help_heading = "Limits, with --largest-load")]
     pub limits: LoadLimits,
-    /// Point whose radius and height are shown with `--largest-load` [default: the only point of interest, otherwise the origin of the last
-    /// link]
+    /// Point whose radius and height are shown with `--largest-load` [default: the only one on what carries the load, otherwise the
+    /// load's centre of mass]
     #[arg(long, value_name = "POINT", requires = "largest_load")]
     pub point: Option<String>,
     /// Compute what moves a run from rest: `--of` then names its columns, each with `.peak` (the largest magnitude), `.maximum`, `.minimum`,

@@ -159,11 +159,11 @@ impl Chart<'_> {
         for sheet in &self.surface.sheets {
             for (&radius, &load) in radii.iter().zip(loads) {
                 let best = best_and_worst(sheet, radius).map(|[best, _]| best);
-                let computed = best.map_or(Cell::Empty, |best| rounded_down(best.load).into());
-                let difference = best.map_or(Cell::Empty, |best| Cell::Change(best.load / load - 1.0));
+                let computed = best.map(|best| rounded_down(best.load));
+                let difference = computed.map_or(Cell::Empty, |computed| Cell::Change(computed / load - 1.0));
                 let limit = best.map_or(Cell::from(UNREACHED), |best| self.limit_words(&best).into());
                 let case = several.then(|| Cell::from(sheet.label.as_str()));
-                let numbers = [radius.into(), load.into(), computed, difference, limit];
+                let numbers = [radius.into(), load.into(), computed.map_or(Cell::Empty, Cell::from), difference, limit];
                 grid.row(case.into_iter().chain(numbers).collect::<Vec<_>>());
             }
         }

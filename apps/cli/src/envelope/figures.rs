@@ -43,6 +43,7 @@ impl Heading {
             format!("{}, spec {hash}{combinations}", layout.description.name),
             format!("Limits{factor}: {}", coverage.considered.join("; ")),
             format!("Not considered: {}", coverage.not_considered.join("; ")),
+            format!("Radius of {} from {}", layout.reach.point(), layout.reach.axis()),
         ])
     }
 
@@ -74,7 +75,12 @@ pub fn write_chart_figures(
     };
     if let Some(surface) = surface {
         let panels = load_chart(surface);
-        let title = heading.headings(&format!("Load chart: largest {parameter} [{}]", load.unit));
+        let mut title = heading.headings(&format!("Load chart: largest {parameter} [{}]", load.unit));
+        if surface.sheets.iter().any(Sheet::is_area) {
+            title.push(
+                "Curves are interpolated between poses; the table has what all poses around a place bear".to_owned(),
+            );
+        }
         save("load_chart", crate::figures::titled(&title, &panels, panels.len().min(2)))?;
     }
     if let Some(slewing) = layout.slewing(envelope) {
@@ -107,7 +113,7 @@ fn load_chart(surface: &Surface) -> Vec<Panel> {
             label: if sheet.label.is_empty() { format!("largest load [{unit}]") } else { sheet.label.clone() },
             colour,
             mark: Mark::Solid,
-            points: sheet.knots.iter().flatten().map(|knot| (knot.radius, knot.load)).collect(),
+            points: sheet.edges().filter(|[a, b]| (b.radius - a.radius).is_finite()).flat_map(step).collect(),
         });
         let (x, y) = ("radius [m]".to_owned(), format!("largest load [{unit}]"));
         return vec![Panel { x, y, equal: false, logarithmic: false, curves: curves.collect() }];
@@ -140,6 +146,12 @@ fn load_chart(surface: &Surface) -> Vec<Panel> {
         }
     };
     surface.sheets.iter().map(panel).collect()
+}
+
+/// Between two poses, the load that both bear, as in the table.
+fn step([from, to]: [Knot; 2]) -> [(f64, f64); 2] {
+    let load = from.load.min(to.load);
+    [(from.radius, load), (to.radius, load)]
 }
 
 /// The four sides of a sheet.

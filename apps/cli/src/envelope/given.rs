@@ -144,12 +144,13 @@ impl Given {
                 }
             }
             let best = found.iter().map(|(_, row)| *row).max_by(|a, b| layout.load_of(a).total_cmp(&layout.load_of(b)));
+            let computed = best.map(|row| rounded_down(layout.load_of(row)));
             let at = positions.iter().zip(&columns);
             let at = at.map(|(given, column)| Cell::of_unit(given.values[index], &layout.columns[*column].unit));
             let numbers = [
                 (*load).into(),
-                best.map_or(Cell::Empty, |row| rounded_down(layout.load_of(row)).into()),
-                best.map_or(Cell::Empty, |row| Cell::Change(layout.load_of(row) / load - 1.0)),
+                computed.map_or(Cell::Empty, Cell::from),
+                computed.map_or(Cell::Empty, |computed| Cell::Change(computed / load - 1.0)),
                 best.map_or(Cell::from(chart::UNREACHED), |row| chart::limit_words(row).into()),
             ];
             grid.row(at.chain(numbers).collect::<Vec<_>>());

@@ -7,6 +7,7 @@ mod identity;
 mod letters;
 mod map;
 mod ranges;
+mod reach;
 mod rows;
 mod summary;
 mod surface;
@@ -19,6 +20,7 @@ use std::{
     time::Instant,
 };
 
+use crane_live::LiveCrane;
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
@@ -41,7 +43,8 @@ use chart::Chart;
 use given::{Given, Places};
 pub use identity::facts as facts_of_chart;
 pub use map::{Map, svg as map_svg};
-pub use ranges::{point, read_ranges, shown, varied};
+pub use ranges::{read_ranges, shown, varied};
+pub use reach::{header_with_reach, reach, reach_facts, reach_line};
 use rows::{ChartRow, Layout};
 
 /// Maximum number of poses: they take some hours.
@@ -51,12 +54,13 @@ const MOST_POSES: usize = 10_000_000;
 pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) -> Outcome<()> {
     let begin = Instant::now();
     let crane = options.analysis.crane.open(registry)?;
-    let (envelope, mut layout) = ask(options, crane.as_ref())?;
+    let live = registry.live(crane.as_ref())?;
+    let (envelope, mut layout) = ask(options, crane.as_ref(), &live)?;
     let name = crane.description().name.as_str();
     layout.combinations = if options.combinations {
         registry.combinations(name)?
     } else {
-        registry.live(crane.as_ref())?.chain().combination.iter().cloned().collect()
+        live.chain().combination.iter().cloned().collect()
     };
     let description = crane.description();
     let unit_of_load = &description.parameters[envelope.load].unit;
@@ -70,7 +74,7 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     let seconds = registry.console.seconds_since(begin);
 
     let mut report = Report::default();
-    let coverage = Coverage::new(crane.as_ref(), &envelope.limits);
+    let coverage = Coverage::new(crane.as_ref(), &envelope.limits, live.gravity());
     summary::facts(&mut report, &envelope, &layout, &coverage, &rows);
     if let Some(seconds) = seconds {
         report.fact("wall time", seconds, "s");
@@ -81,9 +85,10 @@ pub fn envelope(options: &Envelope, registry: &Registry, out: &mut dyn Write) ->
     let chart = surface.as_ref().map(|surface| Chart { surface, rows: &rows, asked_radii: &options.radii });
     let [by_radius, by_place] = chart.as_ref().map_or_else(chart::empty, |chart| [chart.table(), chart.by_place()]);
     if let Some(chart) = &chart {
-        for (end, grid) in [("load_chart", &by_radius), ("loads_by_place", &by_place)] {
+        for (end, grid, radius) in [("load_chart", &by_radius, 0), ("loads_by_place", &by_place, 1)] {
             let file = format!("{name}_{end}.csv");
             let (header, rows) = grid.fields();
+            let header = header_with_reach(header, radius, &layout.reach);
             registry.console.write_fields(&options.folder.out.join(&file), header, rows)?;
             written.push(file);
         }
@@ -134,7 +139,7 @@ fn rows_of(
     let rate = |crane: &dyn DynCrane, name: &str| -> Outcome<(Vec<ChartRow>, Journal)> {
         let file = options.folder.out.join(format!("{name}_envelope.part.csv"));
         let request = Request {
-            line: format!("{} {asked:?} {:?}", journal::identity(crane), layout.point),
+            line: format!("{} {asked:?} {:?}", journal::identity(crane), layout.reach.words()),
             of: "an envelope",
             elsewhere: "choose another folder with `--out`",
         };
@@ -160,7 +165,11 @@ fn rows_of(
 }
 
 /// What the arguments ask for.
-fn ask(options: &Envelope, crane: &dyn DynCrane) -> Outcome<(crane_model::envelope::Envelope, Layout)> {
+fn ask(
+    options: &Envelope,
+    crane: &dyn DynCrane,
+    live: &LiveCrane,
+) -> Outcome<(crane_model::envelope::Envelope, Layout)> {
     let description = crane.description();
     let axes = read_ranges(&options.ranges, description)?;
     if axes.poses() > MOST_POSES {
@@ -170,8 +179,8 @@ fn ask(options: &Envelope, crane: &dyn DynCrane) -> Outcome<(crane_model::envelo
         ));
     }
     let asked = within(&options.limits, axes, crane)?;
-    let point = ranges::point(options.point.as_deref(), description)?;
-    let layout = Layout::new(&asked, crane, point);
+    let reach = reach(options.point.as_deref(), Some(asked.load), live)?;
+    let layout = Layout::new(&asked, description, reach);
     Ok((asked, layout))
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crane_codegen::units::split;
 use crane_model::{
     CoordinateKind, Description,
-    envelope::{Axes, Axis, Varied, only_point},
+    envelope::{Axes, Axis, Varied},
 };
 
 use crate::problem::{Outcome, Problem, nearest};
@@ -133,19 +133,6 @@ pub fn limits(given: &[String], option: &str, what: &str, names: &[&str]) -> Out
         limits[index] = value;
     }
     Ok(limits)
-}
-
-/// The point whose radius and height are shown: the one of this name, or the only one; otherwise the origin of the last link.
-pub fn point(name: Option<&str>, description: &Description) -> Outcome<Option<usize>> {
-    let names = super::points(description);
-    let Some(name) = name else {
-        return Ok(only_point(description));
-    };
-    names.iter().position(|point| *point == name).map(Some).ok_or_else(|| {
-        let guess = nearest(name, names.iter().copied());
-        let guess = guess.map_or_else(String::new, |guess| format!("did you mean `{guess}`? "));
-        Problem::usage(format!("there is no point `{name}`"), format!("{guess}points: {}", names.join(", ")))
-    })
 }
 
 /// Name and unit of what an axis varies, for people (angles in degrees), and the factor for its values.

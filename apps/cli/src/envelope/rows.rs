@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
+use crane_live::Reach;
 use crane_model::{
     Description,
     dyn_crane::DynCrane,
-    envelope::{Condition, Envelope, Limit, Rating, SlewAxis, Varied},
-    nalgebra::Vector3,
+    envelope::{Condition, Envelope, Limit, Rating, Varied},
     results::{Column, KeyFigure, drive_effort},
 };
 use crane_page::tables::number_text;
 
+use super::reach::header_with_reach;
 use crate::{
     npz::{Array, npz},
     problem::{Outcome, Problem},
@@ -47,10 +48,8 @@ impl ChartRow {
 pub struct Layout {
     /// Names and units of the numbers.
     pub columns: Vec<Column>,
-    /// The point whose radius and height are shown; the last link's origin if `None`.
-    pub point: Option<usize>,
-    /// From where the radius is measured.
-    pub slew: SlewAxis,
+    /// The point whose radius and height are shown, and the axis of the radius.
+    pub reach: Reach,
     /// The crane.
     pub description: Description,
     /// Combinations of weights and loads with which the loads are found.
@@ -60,8 +59,8 @@ pub struct Layout {
 
 impl Layout {
     /// The columns: axes, load, place, condition with the crane's own load.
-    pub fn new(envelope: &Envelope, crane: &dyn DynCrane, point: Option<usize>) -> Self {
-        let description = crane.description().clone();
+    pub fn new(envelope: &Envelope, description: &Description, reach: Reach) -> Self {
+        let description = description.clone();
         let mut columns = Vec::new();
         let mut column = |name: String, unit: &str| columns.push(Column::new(name, unit));
         for axis in &envelope.axes.0 {
@@ -89,14 +88,7 @@ impl Layout {
         for point in &description.points {
             column(format!("{point}_deflection_by_the_load"), "m");
         }
-        Self {
-            columns,
-            point,
-            slew: SlewAxis::new(crane),
-            axes: envelope.axes.0.len(),
-            description,
-            combinations: Vec::new(),
-        }
+        Self { columns, reach, axes: envelope.axes.0.len(), description, combinations: Vec::new() }
     }
 
     /// Column of the largest load; radius, height, tipping margin and utilisation follow.
@@ -149,16 +141,13 @@ impl Layout {
 
     /// The row of a pose.
     pub fn row(&self, envelope: &Envelope, crane: &dyn DynCrane, pose: usize, rating: &Rating) -> ChartRow {
-        let position: Option<Vector3<f64>> = rating.loaded.as_ref().map(|at| match self.point {
-            Some(point) => at.points[point],
-            None => at.end,
-        });
+        let parameters = envelope.axes.parameters(crane, pose);
+        let place = rating.loaded.as_ref().map(|at| self.reach.radius_and_height(&at.q, &parameters));
         let or_nan = |number: Option<f64>| number.unwrap_or(f64::NAN);
         let spec_load = rating.with_spec_load.as_ref();
         let mut numbers = envelope.axes.values(pose);
         numbers.push(or_nan(rating.load));
-        numbers.push(or_nan(position.map(|position| self.slew.radius(&position))));
-        numbers.push(or_nan(position.map(|position| position.z)));
+        numbers.extend(place.unwrap_or([f64::NAN; 2]));
         numbers.push(or_nan(spec_load.and_then(Condition::margin)));
         numbers.push(or_nan(spec_load.and_then(Condition::utilisation)));
         let efforts = self.description.drives.len();
@@ -182,7 +171,7 @@ impl Layout {
 
     /// The axis that slews the crane, if it is one of those that vary.
     pub fn slewing(&self, asked: &Envelope) -> Option<usize> {
-        let drive = self.slew.drive?;
+        let drive = self.reach.slewing()?;
         let varies = |axis: &crane_model::envelope::Axis| axis.varied == Varied::Drive(drive) && axis.values.len() > 1;
         asked.axes.0.iter().position(varies)
     }
@@ -204,6 +193,7 @@ pub fn write_rows(
 ) -> Outcome<Vec<String>> {
     let csv = format!("{name}.csv");
     let header = layout.columns.iter().map(ToString::to_string);
+    let header = header_with_reach(header, layout.radius(), &layout.reach);
     let header = header.chain(["governing", "of"].map(str::to_owned));
     let fields = rows.iter().map(|row| {
         let numbers = row.numbers.iter().copied().map(field);

@@ -12,6 +12,7 @@ use crate::figures::wrapped;
 use super::{
     chart::SCREEN,
     ranges::shown,
+    reach::reach_facts,
     rows::{ChartRow, Layout},
     surface::short,
 };
@@ -37,6 +38,7 @@ pub fn facts(report: &mut Report, envelope: &Envelope, layout: &Layout, coverage
         }
     }
     report.value("limits", limits_of(envelope, description, coverage));
+    reach_facts(report, &layout.reach);
     report.fact("poses", rows.len(), "");
     let by_load = |a: &&ChartRow, b: &&ChartRow| layout.load_of(a).total_cmp(&layout.load_of(b));
     let rated = || rows.iter().filter(|row| row.numbers[layout.load()].is_finite());

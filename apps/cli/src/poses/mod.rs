@@ -15,10 +15,10 @@ use crane_page::tables::Report;
 use crate::{
     arguments::{Action, Analysis, Poses},
     envelope::{self, read_ranges},
+    figures::titled,
     problem::{Outcome, Problem},
     quantity::{is_bare, number},
     selection::{Registry, set_parameters},
-    simulate::write_figure,
 };
 use quantities::{PoseRow, Quantities, figure, table};
 
@@ -152,8 +152,7 @@ pub fn rows(asked: &PosesRequest<'_>, registry: &Registry, out: &mut dyn Write) 
     let crane = analysis.crane.open(registry)?;
     let description = crane.description();
     let axes = read_ranges(&poses.ranges, description)?;
-    let point = envelope::point(poses.point.as_deref(), description)?;
-    let subject = quantities::PosedCrane::new(crane.as_ref(), &axes, point, *wanted, registry);
+    let subject = quantities::PosedCrane::new(crane.as_ref(), &axes, poses.point.as_deref(), *wanted, registry)?;
     let bar = registry.console.batches(axes.poses());
     let mut rows: Vec<PoseRow> = Vec::new();
     for pose in 0..axes.poses() {
@@ -166,16 +165,21 @@ pub fn rows(asked: &PosesRequest<'_>, registry: &Registry, out: &mut dyn Write) 
     report.fact_as("count", "poses", rows.len(), "");
     let standing = rows.iter().filter(|row| row.stands()).count();
     report.fact_as("stable_poses", "of which stable", standing, "");
+    envelope::reach_facts(&mut report, &subject.reach);
     for caution in subject.cautions(&rows) {
         report.caution(Some(caution));
     }
     let grid = table(&subject, &rows);
     if let Some(file) = file {
         let (header, fields) = grid.fields();
+        let header = envelope::header_with_reach(header, axes.0.len(), &subject.reach);
         registry.console.write_fields(file, header, fields)?;
         let panels = figure(&subject, &rows);
         if !panels.is_empty() {
-            write_figure(&registry.console, &file.with_extension("svg"), &panels, 2)?;
+            let file = file.with_extension("svg");
+            let picture = titled(&[subject.reach.words()], &panels, 2)
+                .map_err(|error| Problem::failed(format!("cannot draw {}: {error}", file.display()), ""))?;
+            registry.console.write_text(&file, &picture)?;
         }
     }
     report.grid(grid);

@@ -2,13 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use crane_live::LiveCrane;
+use crane_live::{LiveCrane, Reach};
 use crane_model::{
     CoordinateKind, Description,
     dyn_crane::{DynCrane, Functions},
-    envelope::{Axes, Condition, Limits, SlewAxis, Varied, only_mass, range_of_loads},
+    envelope::{Axes, Condition, Limits, Varied, only_mass, range_of_loads},
     modes::{Vibration, vibrations},
-    nalgebra::Vector3,
     results::{KeyFigure, cylinders_at},
     statics,
 };
@@ -16,6 +15,7 @@ use crane_page::tables::{Cell, Grid};
 
 use super::posed;
 use crate::{
+    envelope,
     figures::{Curve, Mark, PALETTE, Panel},
     problem::Outcome,
     selection::{Registry, take_numbers},
@@ -43,12 +43,12 @@ struct Column {
 pub struct PosedCrane<'a> {
     crane: &'a dyn DynCrane,
     /// The crane with rigid beams and no other difference, if there is one.
-    rigid: Option<LiveCrane>,
+    rigid: Option<(Reach, LiveCrane)>,
     /// Index of the load and its smallest value.
     load: Option<(usize, f64)>,
     axes: &'a Axes,
-    point: Option<usize>,
-    slew: SlewAxis,
+    /// The point whose radius, height and deflection are shown.
+    pub reach: Reach,
     wanted: Quantities,
 }
 
@@ -74,21 +74,27 @@ impl<'a> PosedCrane<'a> {
     pub fn new(
         crane: &'a dyn DynCrane,
         axes: &'a Axes,
-        point: Option<usize>,
+        point: Option<&str>,
         wanted: Quantities,
         registry: &Registry,
-    ) -> Self {
+    ) -> Outcome<Self> {
         let description = crane.description();
+        let reach_of = |live: &LiveCrane| envelope::reach(point, only_mass(live.description()), live);
         let checked = registry.checked(&description.name).ok().filter(|_| matches!(wanted, Quantities::Statics));
         let change = checked.and_then(|checked| variants::rigid(&description.name, &checked.spec.crane).ok()?);
         // A crane that moves by its beams alone has no rigid form.
         let twin = change.and_then(|change| registry.changed(&description.name, &change).ok()?.ok());
         let twin = twin.map(|checked| LiveCrane::new(checked.chain));
         let rigid = twin.filter(|twin| twin.description().parameters.len() == description.parameters.len());
+        let rigid = match rigid {
+            Some(rigid) => Some((reach_of(&rigid)?, rigid)),
+            None => None,
+        };
         let varies = |index| axes.0.iter().any(|axis| axis.varied == Varied::Parameter(index));
         let load = only_mass(description).filter(|load| !varies(*load) && matches!(wanted, Quantities::Statics));
         let load = load.map(|load| (load, range_of_loads(crane, load, None)[0]));
-        Self { crane, rigid, load, axes, point, slew: SlewAxis::new(crane), wanted }
+        let reach = reach_of(&registry.live(crane)?)?;
+        Ok(Self { crane, rigid, load, axes, reach, wanted })
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -140,39 +146,29 @@ impl<'a> PosedCrane<'a> {
         let limits = Limits { tipping: None, utilisation: None, ..Limits::usual(crane.description()) };
         let beyond = Condition::at(crane, q.clone(), &positions).exceeded(crane, &limits);
         let exceeded = beyond.iter().map(|margin| (margin.limit.kind(), margin.limit.location(crane))).collect();
-        let position = self.position_of_point(crane, &q);
-        let mut values = vec![Some(self.slew.radius(&position)), Some(position.z)];
+        let mut values: Vec<_> = self.reach.radius_and_height(&q, &parameters_of(crane)).map(Some).into();
         match self.wanted {
-            Quantities::Statics => values.extend(self.of_statics(crane, &q, &position)?),
+            Quantities::Statics => values.extend(self.of_statics(crane, &q)?),
             Quantities::Strength => values.extend(of_strength(crane, q)),
             Quantities::Modes(count) => values.extend(of_modes(crane, &q, count)?),
         }
         Ok(PoseRow { settings, values, status, stable, exceeded })
     }
 
-    /// Where the point is that is shown.
-    fn position_of_point(&self, crane: &dyn DynCrane, q: &[f64]) -> Vector3<f64> {
-        match self.point {
-            Some(point) => crane.points_at(q)[point],
-            None => {
-                crane.transforms_at(q).last().map_or_else(Vector3::zeros, |last| last.fixed_view::<3, 1>(0, 3).into())
-            }
-        }
-    }
-
-    fn of_statics(&self, crane: &dyn DynCrane, q: &[f64], position: &Vector3<f64>) -> Outcome<Vec<Option<f64>>> {
-        let moved = |other: &dyn DynCrane| {
+    fn of_statics(&self, crane: &dyn DynCrane, q: &[f64]) -> Outcome<Vec<Option<f64>>> {
+        let position = self.reach.position(q, &parameters_of(crane));
+        let moved = |other: &dyn DynCrane, reach: &Reach| {
             let rest = other.equilibrium(&statics::Settings::default());
-            rest.is_stable().then(|| (position - self.position_of_point(other, &rest.q)).norm())
+            rest.is_stable().then(|| (position - reach.position(&rest.q, &parameters_of(other))).norm())
         };
         let mut values = Vec::new();
-        if let Some(rigid) = &self.rigid {
+        if let Some((reach, rigid)) = &self.rigid {
             let mut rigid = rigid.boxed_clone();
             take_numbers(crane, rigid.as_mut())?;
-            values.push(moved(rigid.as_ref()));
+            values.push(moved(rigid.as_ref(), reach));
         }
         if let Some(unloaded) = self.load {
-            values.push(moved(posed(crane, &[unloaded])?.as_ref()));
+            values.push(moved(posed(crane, &[unloaded])?.as_ref(), &self.reach));
         }
         let rest = vec![0.0; q.len()];
         if !crane.description().supports.is_empty() {
@@ -230,6 +226,11 @@ impl<'a> PosedCrane<'a> {
         };
         self.axes.0.iter().map(|axis| of(axis.varied)).collect()
     }
+}
+
+/// Values of the live parameters of a crane.
+fn parameters_of(crane: &dyn DynCrane) -> Vec<f64> {
+    (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect()
 }
 
 /// Utilisation, equivalent stress and tipping margin.

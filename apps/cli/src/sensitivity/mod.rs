@@ -18,7 +18,7 @@ use crane_live::sensitivity::{
 use crane_model::{
     Description,
     dyn_crane::Functions,
-    envelope::{Axes, Envelope, SlewAxis},
+    envelope::{Axes, Envelope},
 };
 use crane_page::tables::{Cell, Report};
 
@@ -269,19 +269,19 @@ fn facts_of_load(
 ) -> Outcome<()> {
     let description = crane.description();
     let info = &description.parameters[asked.load];
-    let point = envelope::point(options.point.as_deref(), description)?;
-    let at = point.map_or(largest.condition.end, |point| largest.condition.points[point]);
-    let radius = SlewAxis::new(crane).radius(&at);
+    let reach = envelope::reach(options.point.as_deref(), Some(asked.load), crane)?;
+    let [radius, height] = reach.radius_and_height(&largest.condition.q, crane.parameters());
     report.line(format!("largest {}", info.name), largest.load, info.unit.as_str());
     report.line("limited by", largest.words(crane), "");
     report.line("at a radius of", format!("{radius:.2}"), "m");
-    report.line("and a height of", format!("{:.2}", at.z), "m");
+    report.line("and a height of", format!("{height:.2}"), "m");
+    envelope::reach_line(report, &reach);
     let of = largest.limit.location(crane);
     report.value(
         "largest_load",
         json!({
             "parameter": info.name.as_str(), "load": largest.load, "unit": info.unit.as_str(), "limit": largest.limit.kind(),
-            "of": (!of.is_empty()).then_some(of), "radius": radius, "height": at.z, "load_factor": asked.factor,
+            "of": (!of.is_empty()).then_some(of), "radius": radius, "height": height, "point": reach.point(), "radius_from": reach.axis(), "load_factor": asked.factor,
         }),
     );
     Ok(())

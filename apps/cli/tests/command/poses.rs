@@ -59,7 +59,12 @@ fn deflection_over_angle_is_that_of_a_cantilever() {
     }
     assert_eq!(found["units"]["poses"]["arm_psi"], "rad");
     let table = fs::read_to_string(&csv).expect("a table");
-    assert!(table.starts_with("arm_psi [rad],radius [m],height [m],deflection by flexibility [m]"), "{table}");
+    assert!(
+        table.starts_with(
+            "arm_psi [rad],radius of tip from the world's origin [m],height [m],deflection by flexibility [m]"
+        ),
+        "{table}"
+    );
     assert!(csv.with_extension("svg").exists());
     // The only row of a pose that is held is the same as that of a range.
     let held = json(&["statics", &file, "--hold", "arm_psi=30deg", "--format", "json"]);

@@ -121,7 +121,7 @@ export class LoadChart {
     }
   }
 
-  show({ poses, load, unit, point }, along, by) {
+  show({ poses, load, unit, point, radius_from: axle }, along, by) {
     const { drives, name } = this.crane;
     const drive = (range) => drives[range.drive];
     const shown = (range) => always(drive(range).unit);
@@ -137,7 +137,7 @@ export class LoadChart {
     })];
     this.results.append(grid({
       key: "chart", title: `Largest ${spoken(load)}, and what limits it`,
-      headers: [...(by ? [`${spoken(drive(by).name)} [${y.unit}]`] : []), `${axis.label} [${x.unit}]`, `radius of ${point ? spoken(point) : "the point"} [m]`, "height [m]", `${spoken(load)} [${unit}]`, "limit", "where"],
+      headers: [...(by ? [`${spoken(drive(by).name)} [${y.unit}]`] : []), `${axis.label} [${x.unit}]`, `radius of ${spoken(point)} from ${spoken(axle)} [m]`, "height [m]", `${spoken(load)} [${unit}]`, "limit", "where"],
       numeric: [...(by ? [true] : []), true, true, true, true, false, false],
       rows: poses.map((pose) => [
         ...(by ? [readable(pose.at[0] * y.factor)] : []), readable(pose.at.at(-1) * x.factor), readable(pose.radius), readable(pose.height), readable(pose.load), pose.limit ?? "none", spoken(pose.where ?? ""),

@@ -104,6 +104,12 @@ impl LiveCrane {
         &self.parameters
     }
 
+    /// Acceleration of gravity in the world frame, m/s².
+    #[must_use]
+    pub fn gravity(&self) -> [f64; 3] {
+        self.chain().gravity.each_ref().map(|value| value.at(&self.parameters))
+    }
+
     /// Value of an input at t = 0 where it is not set.
     #[must_use]
     pub fn input_start(&self, index: usize) -> f64 {

@@ -255,8 +255,22 @@ fn a_drive_of_the_spec_limits_the_load() {
     assert!(free.load > ratings[1].load.map(|load| 2.0 * load), "{:?}", free.load);
     // What is left out is said.
     let words = "the effort of arm_theta at most 8000 N m";
-    assert!(Coverage::new(&crane, &limits).not_considered.iter().any(|entry| entry == words));
-    assert!(Coverage::new(&crane, &limits_of(&crane)).considered.iter().any(|entry| entry == words));
+    assert!(Coverage::new(&crane, &limits, crane.gravity()).not_considered.iter().any(|entry| entry == words));
+    assert!(Coverage::new(&crane, &limits_of(&crane), crane.gravity()).considered.iter().any(|entry| entry == words));
+}
+
+/// A slope is considered, and said to be, with and without loads; without one it is not.
+#[test]
+fn a_slope_of_the_spec_is_considered() {
+    let loads = "loads: [{name: gust, link: arm, at: [0, 0, 0], force: [0, 5, 0]}]\n";
+    for more in ["", loads] {
+        let of = |slope: &str| {
+            let crane = arm("rigid: true", &format!("{more}{slope}"));
+            Coverage::new(&crane, &limits_of(&crane), crane.gravity())
+        };
+        assert!(of("slope: {angle: 4 deg}").considered.contains(&"a slope of the ground of 4.00°".to_owned()));
+        assert!(of("").not_considered.contains(&"a slope of the ground".to_owned()));
+    }
 }
 
 /// A joint that gives way until it meets its stop at 0.02 rad: k · 0.02 = m g R cos 0.02.
@@ -302,7 +316,7 @@ connectors:
     assert_close("the rope", rating.load.unwrap(), 2.0 * 4e3 / GRAVITY, ACCURACY);
     assert_eq!(rating.governing, Some(Limit::Tension { rope: 0 }));
     let words = "a tension of hoist of at most 4000 N";
-    assert!(Coverage::new(&crane, &limits_of(&crane)).considered.iter().any(|entry| entry == words));
+    assert!(Coverage::new(&crane, &limits_of(&crane), crane.gravity()).considered.iter().any(|entry| entry == words));
     let mut heavy = crane;
     heavy.set_parameter(0, 900.0).unwrap();
     let rest = (&heavy as &dyn DynCrane).equilibrium(&statics::Settings::default());

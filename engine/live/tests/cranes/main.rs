@@ -39,6 +39,7 @@ mod motion_derivatives;
 mod overlaps;
 mod quasi_static;
 mod rates;
+mod reach;
 mod rigid_couplings;
 mod rope;
 mod rows;
