@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::{
     ParameterError, StateAt, Wrench,
-    dyn_crane::{DynCrane, Energies, Functions},
+    dyn_crane::{DynCrane, Energies},
     dynamics,
     dynamics::{InitialState, Run, Sample, Stopped, ensemble, ensemble::Member},
     feet::{Feet, Slid},
@@ -12,7 +12,7 @@ use crate::{
     hydraulics::Oil,
     modes,
     modes::SmallMotions,
-    results::QUANTITIES,
+    results::{QUANTITIES, drive_efforts_with, energies_with},
     statics,
     statics::Equilibrium,
 };
@@ -96,21 +96,4 @@ impl dyn DynCrane + '_ {
         };
         members.iter().enumerate().map(run).collect()
     }
-}
-
-/// Torques and forces of the drives at a state of the crane and its forces, N m and N.
-pub(crate) fn drive_efforts_with(crane: &dyn Functions, moment: &StateAt<'_>) -> Vec<f64> {
-    let mut efforts = crane.open_drive_efforts_at(moment.t, moment.q, moment.v);
-    force_states::add_to_rigid_drives(crane, moment, &mut efforts);
-    if let Some(oil) = Oil::at(crane, moment) {
-        oil.give_efforts(crane.description(), &mut efforts);
-    }
-    efforts
-}
-
-/// Energies at a state of the crane and its forces, with the springs of feet that have slid, J.
-pub(crate) fn energies_with(crane: &dyn Functions, moment: &StateAt<'_>, slid: &Slid) -> Energies {
-    let mut energies = crane.energies_at(moment.t, moment.q, moment.v);
-    energies.supports += slid.energy;
-    energies
 }

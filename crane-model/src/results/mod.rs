@@ -29,7 +29,7 @@ pub use headlines::{Kind, ROUNDING, headlines};
 pub use history::{Instant, instants, stressed_over};
 pub use key_figures::KeyFigure;
 pub use peaks::Peaks;
-pub(crate) use recording::{FleetRecording, quantities_with};
+pub(crate) use recording::{FleetRecording, drive_efforts_with, energies_with, quantities_with};
 pub use recording::{
     QUANTITIES, Recording, connector_force, drive_effort, friction_utilisation, quantities, quantities_at, stop_effort,
     support_gap,

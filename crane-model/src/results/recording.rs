@@ -7,7 +7,6 @@ use nalgebra::Vector3;
 
 use crate::{
     ConnectorInfo, CoordinateKind, Description, LoopJointInfo, StateAt, bristles,
-    crane::{drive_efforts_with, energies_with},
     dyn_crane::{DynCrane, Energies, Functions},
     dynamics::{Phases, Quantities, Sample},
     feet::Slid,
@@ -202,6 +201,23 @@ pub(crate) fn quantities_with(crane: &dyn DynCrane, moment: &StateAt<'_>, added:
     exerted.efforts.iter_mut().zip(added).for_each(|(effort, added)| *effort += added);
     push_quantities(crane, Extent::All, moment, &exerted, &mut row);
     row
+}
+
+/// Torques and forces of the drives at a state of the crane and its forces, N m and N.
+pub(crate) fn drive_efforts_with(crane: &dyn Functions, moment: &StateAt<'_>) -> Vec<f64> {
+    let mut efforts = crane.open_drive_efforts_at(moment.t, moment.q, moment.v);
+    force_states::add_to_rigid_drives(crane, moment, &mut efforts);
+    if let Some(oil) = Oil::at(crane, moment) {
+        oil.give_efforts(crane.description(), &mut efforts);
+    }
+    efforts
+}
+
+/// Energies at a state of the crane and its forces, with the springs of feet that have slid, J.
+pub(crate) fn energies_with(crane: &dyn Functions, moment: &StateAt<'_>, slid: &Slid) -> Energies {
+    let mut energies = crane.energies_at(moment.t, moment.q, moment.v);
+    energies.supports += slid.energy;
+    energies
 }
 
 /// What depends on whether motions of drives and winches go on: at rest they stand, and nothing resists their rates.

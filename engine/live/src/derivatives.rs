@@ -94,9 +94,9 @@ mod tests {
     use crane_codegen::program::FunctionId;
     use crane_model::dyn_crane::{Arguments, DynCrane, Functions};
 
+    use crate::Evaluation;
     use crate::LiveCrane;
     use crate::dual::{DIRECTIONS, Dual8};
-    use crate::evaluation::Evaluation;
     use crate::machine::Number;
 
     /// Prescribed coordinates, feet, stops, friction, branches, both section joints, cylinders.

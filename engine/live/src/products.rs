@@ -16,10 +16,10 @@ use crane_codegen::chain::Input;
 use crane_codegen::program::{self, Argument, FunctionId, PULLED_BACK, Product};
 use crane_model::dyn_crane::{Arguments, Functions};
 
+use crate::Evaluation;
 use crate::LiveCrane;
 use crate::assemble::TooLarge;
 use crate::dual::{DIRECTIONS, Dual8};
-use crate::evaluation::Evaluation;
 use crate::library::Library;
 use crate::machine::{Environment, Machine, Number};
 

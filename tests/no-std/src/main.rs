@@ -3,9 +3,9 @@
 use std::hint::black_box;
 
 use bytemuck::Zeroable;
+use crane_model::CraneModel;
 use crane_model::dynamics::rk4::State;
 use crane_model::rt::lanes::splat;
-use crane_model::CraneModel;
 use crane_quantities::{Extent, FunctionId, quantities};
 
 /// The arguments of functions, by their names in the table.

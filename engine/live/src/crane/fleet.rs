@@ -10,8 +10,8 @@ use crane_quantities::{Count, Part};
 use wide::bytemuck::{cast_slice, cast_slice_mut};
 
 use super::LiveCrane;
+use super::evaluation::Evaluation;
 use super::systems::Ready;
-use crate::evaluation::Evaluation;
 use crate::inputs::slots_of;
 use crate::machine::{Batch, Environment};
 use crate::routine::Routine;

@@ -3,9 +3,9 @@
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::{Arguments, Functions};
 
+use super::evaluation::Evaluation;
 use crate::LiveCrane;
 use crate::dual::{DIRECTIONS, Dual8};
-use crate::evaluation::Evaluation;
 
 /// Numbers, of which some from the `first` one on have slopes, each in a direction of its own.
 fn numbers(values: &[f64], first: usize) -> Vec<Dual8> {

@@ -1,5 +1,6 @@
 //! A crane from a chain that implements what all algorithms need.
 
+mod evaluation;
 mod fleet;
 mod loop_stiffness;
 mod model;
@@ -16,9 +17,9 @@ use crane_model::dyn_crane::{DynCrane, Functions};
 use crane_model::rt::derivatives::Link;
 use crane_model::{Description, LoopJointInfo, ParameterError, StageInfo, fill_links};
 
-use crate::evaluation::Evaluation;
 use crate::inputs::{Inputs, slots_of};
 use crate::library::Library;
+pub use evaluation::Evaluation;
 
 /// A crane of any number of coordinates that is ready without rustc.
 ///

@@ -8,8 +8,8 @@ use std::ops::Range;
 use crane_codegen::program::{Count, Extent, FunctionId};
 use crane_model::dyn_crane::{Arguments, DynCrane, Functions};
 
+use super::evaluation::Evaluation;
 use crate::LiveCrane;
-use crate::evaluation::Evaluation;
 use crate::machine::{Batch, Number};
 use crate::routine::Routine;
 

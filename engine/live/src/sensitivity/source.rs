@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use crane_codegen::program::FunctionId;
 use crane_model::dyn_crane::Arguments;
 
+use crate::Evaluation;
 use crate::LiveCrane;
 use crate::dual::Dual8;
-use crate::evaluation::Evaluation;
 use crate::machine::Number;
 
 /// The functions of a crane at t = 0, with live parameters that may have slopes.

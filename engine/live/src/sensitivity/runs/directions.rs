@@ -9,10 +9,10 @@ use crane_model::dynamics::gradients::{Around, CylinderSlopes, FeetSlopes, Motio
 use crane_model::{Description, EventInfo, ParameterError};
 
 use super::Along;
+use crate::Evaluation;
 use crate::LiveCrane;
 use crate::bytecode::{Code, Fixed};
 use crate::dual::{DIRECTIONS, Dual8};
-use crate::evaluation::Evaluation;
 use crate::machine::Number;
 
 /// Relative step of a parameter or an input for what is differenced, and its step from zero.

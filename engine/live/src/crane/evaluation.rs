@@ -7,7 +7,7 @@ use crane_model::dyn_crane::{Arguments, Derived, Functions};
 use crane_model::rt::derivatives::Columns;
 use crane_model::rt::fill_tangent;
 
-use crate::LiveCrane;
+use super::LiveCrane;
 use crate::derivatives::Storage;
 use crate::expansion::{mass_matrix, second_derivatives};
 use crate::library::Library;
