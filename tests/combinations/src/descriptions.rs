@@ -382,9 +382,10 @@ fn overlay(tree: &Tree, _: &mut Rng) -> Option<Second> {
     Some(Second { source: source(&base).changed(&text), ..Second::new(tree) }.with_cautions())
 }
 
-/// Whether a number is a value of the live parameter that is the load, or what happens there.
+/// Whether a number is a value of the live parameter that is the load, or what happens or is there.
 fn of_load(name: &str) -> bool {
     ["load of ", "load that ", "governed by "].iter().any(|what| name.starts_with(what))
+        || name.ends_with(" of a chart")
 }
 
 fn parameters_written_in(tree: &Tree, _: &mut Rng) -> Option<Second> {
