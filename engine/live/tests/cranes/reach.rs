@@ -18,7 +18,9 @@ fn shown(links: &str, changed: &[(usize, f64)]) -> (String, [f64; 2]) {
     let text = format!("format: 1\nname: crane\nparameters: {{payload: {{value: 300, unit: kg}}}}\n{links}");
     let (crane, reach) = reach(&SourceFile::new("crane.yaml", text), None);
     let mut q = crane.chain().guess_at(crane.parameters());
-    changed.iter().for_each(|(index, value)| q[*index] = *value);
+    for (index, value) in changed {
+        q[*index] = *value;
+    }
     (reach.words(), reach.radius_and_height(&q, crane.parameters()))
 }
 
