@@ -62,7 +62,7 @@ pub enum NoCriticalLoad {
         /// How statics ends with a little more.
         status: Status,
         /// And why.
-        diagnosis: Diagnosis,
+        diagnosis: Box<Diagnosis>,
     },
 }
 
@@ -139,7 +139,7 @@ pub fn critical_load(
             (Status::TipsOver { feet }, _) if critical == Critical::Tipping => {
                 Ok(CriticalLoad { load, location: feet.join(" – "), at_least })
             }
-            (status, diagnosis) => Err(NoCriticalLoad::Otherwise { load, status, diagnosis }),
+            (status, diagnosis) => Err(NoCriticalLoad::Otherwise { load, status, diagnosis: Box::new(diagnosis) }),
         },
         Some(limit) => Ok(CriticalLoad { load, location: limit.location(crane), at_least }),
     }
