@@ -149,7 +149,7 @@ impl<T: Number> Evaluation<T> {
 }
 
 impl<T: Number<Columns: Columns<Lane = T>>> Evaluation<T> {
-    /// Computes the function as [`DynCrane::call`] does.
+    /// Computes the function as [`Functions::call`](crane_model::dyn_crane::Functions::call) does.
     pub fn call(&mut self, at: &Arguments<'_, T>, out: &mut [T]) -> Derived {
         match self.multiply(at, out) {
             Some(derived) => derived,
