@@ -53,7 +53,7 @@ fn damping_ratio_and_frequency_of_one_mass() {
     assert!(state.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{state}");
 }
 
-/// What a crane without the functions has is NaN, which is told as such, not as a mass matrix that is not positive definite.
+/// A crane without the functions has NaN: the error says so, and does not speak of a mass matrix that is not positive definite.
 #[test]
 fn small_motions_that_are_no_numbers_are_told() {
     let mut motions = SmallMotions::from(&Lift::default().linearise(&Vector1::zeros()));
