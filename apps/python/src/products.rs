@@ -7,7 +7,7 @@ use crane_live::FunctionId;
 use crane_live::assemble::TooLarge;
 use crane_live::machine::Batch;
 use crane_live::products::{self, PullBack, PushForward, PushForwardOfLarge};
-use crane_model::dyn_crane::Functions;
+use crane_model::dyn_crane::{Arguments, Functions};
 use crane_model::rt::lanes::f64x8;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -27,7 +27,7 @@ trait Multiply<T> {
     /// Other live parameters, all of them.
     fn set_parameters(&mut self, parameters: &[T]);
     /// The product with a vector, number by number.
-    fn multiply(&mut self, state: &products::ProductState<'_, T>, vector: &[T], take: &mut dyn FnMut(usize, T));
+    fn multiply(&mut self, state: &Arguments<'_, T>, vector: &[T], take: &mut dyn FnMut(usize, T));
 }
 
 impl<T: Batch> Multiply<T> for Option<PullBack<T>> {
@@ -36,7 +36,7 @@ impl<T: Batch> Multiply<T> for Option<PullBack<T>> {
             own.set_parameters(parameters);
         }
     }
-    fn multiply(&mut self, state: &products::ProductState<'_, T>, weights: &[T], take: &mut dyn FnMut(usize, T)) {
+    fn multiply(&mut self, state: &Arguments<'_, T>, weights: &[T], take: &mut dyn FnMut(usize, T)) {
         let pulled = self.as_mut().map(|own| own.at(state, weights));
         pulled.iter().flat_map(products::Pulled::all).enumerate().for_each(|(index, number)| take(index, number));
     }
@@ -48,7 +48,7 @@ impl<T: Batch> Multiply<T> for Option<PushForward<T>> {
             own.set_parameters(parameters);
         }
     }
-    fn multiply(&mut self, state: &products::ProductState<'_, T>, changes: &[T], take: &mut dyn FnMut(usize, T)) {
+    fn multiply(&mut self, state: &Arguments<'_, T>, changes: &[T], take: &mut dyn FnMut(usize, T)) {
         let pushed = self.as_mut().map(|own| own.at(state, changes));
         pushed.into_iter().flatten().enumerate().for_each(|(index, number)| take(index, *number));
     }
@@ -65,7 +65,7 @@ impl Multiply<f64> for Large {
     fn set_parameters(&mut self, parameters: &[f64]) {
         self.parameters = parameters.to_vec();
     }
-    fn multiply(&mut self, state: &products::ProductState<'_>, changes: &[f64], take: &mut dyn FnMut(usize, f64)) {
+    fn multiply(&mut self, state: &Arguments<'_>, changes: &[f64], take: &mut dyn FnMut(usize, f64)) {
         self.push.at(state, &self.parameters, changes, &mut self.results);
         self.results.iter().enumerate().for_each(|(index, number)| take(index, *number));
     }
@@ -250,7 +250,7 @@ fn at_rows<'r, T: Batch, M: Multiply<T>>(
         products.set_parameters(&lanes(index));
     }
     let t = t.first().copied().unwrap_or(T::splat(0.0));
-    products.multiply(&crane_live::products::ProductState { t, q: &q, v: &v, a: &a }, &vector, &mut |place, number| {
+    products.multiply(&Arguments { t, q: &q, v: &v, a: &a, ..Arguments::none() }, &vector, &mut |place, number| {
         for lane in 0..count {
             out[lane * width + place] = number.lane(lane);
         }

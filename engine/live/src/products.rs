@@ -23,19 +23,6 @@ use crate::dual::{DIRECTIONS, Dual8};
 use crate::library::Library;
 use crate::machine::{Environment, Machine, Number};
 
-/// A state at which a function is differentiated, or eight.
-#[derive(Clone, Copy, Debug)]
-pub struct ProductState<'a, T = f64> {
-    /// Time, s.
-    pub t: T,
-    /// Pose, m and rad.
-    pub q: &'a [T],
-    /// Its rates.
-    pub v: &'a [T],
-    /// Accelerations.
-    pub a: &'a [T],
-}
-
 /// Names of all numbers that functions of a crane depend on, and how many each has. A live parameter that is called as one of the first four is
 /// `parameters.q`.
 #[must_use]
@@ -98,11 +85,9 @@ impl<T: Number> Calls<T> {
         }
     }
 
-    fn run(&mut self, state: &ProductState<'_, T>, multiplier: &[T]) {
+    fn run(&mut self, state: &Arguments<'_, T>, multiplier: &[T]) {
         let Self { library, function, product, machine, inputs, results, .. } = self;
-        let &ProductState { t, q, v, a } = state;
-        let arguments = Arguments { t, q, v, a, ..Arguments::none() };
-        let environment = Environment { multiplier, inputs, ..arguments.into() };
+        let environment = Environment { multiplier, inputs, ..(*state).into() };
         if let Ok(Some(routine)) = library.product(*function, *product) {
             routine.run(machine, &environment, results);
         }
@@ -145,7 +130,7 @@ impl<T: Number> PullBack<T> {
     }
 
     /// The product at a state, with a weight for each result of the function, in their order.
-    pub fn at(&mut self, state: &ProductState<'_, T>, weights: &[T]) -> Pulled<'_, T> {
+    pub fn at(&mut self, state: &Arguments<'_, T>, weights: &[T]) -> Pulled<'_, T> {
         self.0.run(state, weights);
         let Calls { results, places, .. } = &self.0;
         let [t, q, v, a, parameters, inputs] = places.each_ref().map(|place| &results[place.clone()]);
@@ -188,7 +173,7 @@ impl<T: Number> PushForward<T> {
     }
 
     /// The product at a state, with the changes of all [`numbers`]; one number for each result of the function.
-    pub fn at(&mut self, state: &ProductState<'_, T>, changes: &[T]) -> &[T] {
+    pub fn at(&mut self, state: &Arguments<'_, T>, changes: &[T]) -> &[T] {
         let [.., inputs] = &self.calls.places;
         let (own, of_inputs) = changes.split_at(inputs.start.min(changes.len()));
         self.changes[..own.len()].copy_from_slice(own);
@@ -219,7 +204,7 @@ impl PushForwardOfLarge {
     }
 
     /// The product at a state and with live parameters, with the changes of all [`numbers`]; one number for each result of the function.
-    pub fn at(&mut self, state: &ProductState<'_>, parameters: &[f64], changes: &[f64], out: &mut [f64]) {
+    pub fn at(&mut self, state: &Arguments<'_>, parameters: &[f64], changes: &[f64], out: &mut [f64]) {
         let mut changes = changes.iter().copied();
         let mut next = |number: f64| {
             let mut slopes = [0.0; DIRECTIONS];

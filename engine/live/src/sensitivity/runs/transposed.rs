@@ -3,14 +3,14 @@
 use crane_codegen::chain::Input;
 use crane_codegen::program::FunctionId;
 use crane_model::EventInfo;
-use crane_model::dyn_crane::{DynCrane, Functions};
+use crane_model::dyn_crane::{Arguments, DynCrane, Functions};
 use crane_model::dynamics::gradients::{Around, Covector, CylinderSlopes, FeetSlopes, MotionAt, Numbers, PullBacks};
 
 use super::Along;
 use super::directions::{Directions, FEET};
 use crate::LiveCrane;
 use crate::assemble::TooLarge;
-use crate::products::{ProductState, PullBack, Pulled};
+use crate::products::{PullBack, Pulled};
 
 /// The transposed functions of a crane.
 pub(super) struct Transposed<'a> {
@@ -119,7 +119,7 @@ impl PullBacks for Transposed<'_> {
 
     fn residuals(&mut self, at: &MotionAt<'_>, weights: &[f64], sum: &mut Covector) {
         let Self { places, residual, loop_jacobians, .. } = self;
-        let state = ProductState { t: at.t, q: at.q, v: at.v, a: at.a };
+        let state = Arguments { t: at.t, q: at.q, v: at.v, a: at.a, ..Arguments::none() };
         if let Some(residual) = residual {
             places.add(&residual.at(&state, weights), sum);
         }
@@ -135,7 +135,7 @@ impl PullBacks for Transposed<'_> {
 
     fn loops(&mut self, at: &MotionAt<'_>, weights: &[[f64; 3]], sum: &mut Covector) {
         let Self { places, loop_states, loop_jacobians, .. } = self;
-        let state = ProductState { t: at.t, q: at.q, v: at.v, a: at.a };
+        let state = Arguments { t: at.t, q: at.q, v: at.v, a: at.a, ..Arguments::none() };
         if let (Some(states), Some(jacobians)) = (loop_states, loop_jacobians) {
             places.add(&states.at(&state, weights.as_flattened()), sum);
             let weights: Vec<f64> =
@@ -148,7 +148,7 @@ impl PullBacks for Transposed<'_> {
         let Self { directions, places, .. } = self;
         let crane = directions.crane();
         let (Some(states), Some(jacobians)) = (&mut self.cylinder_states, &mut self.cylinder_jacobians) else { return };
-        let state = ProductState { t: at.t, q: at.q, v: at.v, a: at.a };
+        let state = Arguments { t: at.t, q: at.q, v: at.v, a: at.a, ..Arguments::none() };
         let of_states: Vec<f64> = weights
             .iter()
             .flat_map(|cylinder_slopes| [cylinder_slopes.length_and_rate[0], cylinder_slopes.length_and_rate[1], 0.0])
@@ -177,7 +177,7 @@ impl PullBacks for Transposed<'_> {
             .iter()
             .flat_map(|cylinder_slopes| [cylinder_slopes.wanted[0], cylinder_slopes.wanted[1], 0.0])
             .collect();
-        let pulled = states.at(&ProductState { q: &wanted[0], v: &wanted[1], ..state }, &of_wanted);
+        let pulled = states.at(&Arguments { q: &wanted[0], v: &wanted[1], ..state }, &of_wanted);
         places.add_numbers(&pulled, sum);
         for cylinder in driven() {
             let coordinate = description.drives[cylinder.drive].coordinate;
@@ -193,7 +193,7 @@ impl PullBacks for Transposed<'_> {
 
     fn feet(&mut self, at: &MotionAt<'_>, weights: &FeetSlopes, sum: &mut Covector) {
         let Self { places, feet: Some(feet), .. } = self else { return };
-        let state = ProductState { t: at.t, q: at.q, v: at.v, a: at.a };
+        let state = Arguments { t: at.t, q: at.q, v: at.v, a: at.a, ..Arguments::none() };
         let FeetSlopes { elongations, jacobians, stiffnesses, dampings, grips } = weights;
         for (function, weights) in feet.iter_mut().zip([elongations, jacobians, stiffnesses, dampings, grips]) {
             if let Some(function) = function {
@@ -205,7 +205,7 @@ impl PullBacks for Transposed<'_> {
     fn drive_motions(&mut self, t: f64, weights: &[[f64; 2]], sum: &mut Covector) {
         let Self { directions, places, motions, .. } = self;
         if let Some(motions) = motions.as_mut().filter(|_| directions.may_move_drives()) {
-            let state = ProductState { t, q: &[], v: &[], a: &[] };
+            let state = Arguments { t, ..Arguments::none() };
             places.add_numbers(&motions.at(&state, weights.as_flattened()), sum);
         }
     }
