@@ -98,7 +98,7 @@ impl dyn DynCrane + '_ {
         out.into_iter().map(|[limit, _]| (limit > 0.0).then_some(limit)).collect()
     }
 
-    /// Prescribed positions, one per drive. [`drive_positions_at`](super::DynCrane::drive_positions_at) has them by coordinate, as functions take them.
+    /// Prescribed positions, one per drive. [`drive_positions_at`](super::Functions::drive_positions_at) has them by coordinate, as functions take them.
     pub fn drive_targets_at(&self, t: f64) -> Vec<f64> {
         self.drive_motions_at(t).into_iter().map(|[position, _]| position).collect()
     }

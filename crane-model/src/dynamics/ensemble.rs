@@ -132,7 +132,7 @@ impl Members for (&dyn DynCrane, &[Member]) {
 }
 
 /// Integrates Eq. (23) of every crane from its state at t = 0, as many at a time as there are lanes, and passes `observe` its index and a sample at
-/// t = 0, at every interval and at the end, like a [`Simulation`] with RK4 and without audit. Events do not happen.
+/// t = 0, at every interval and at the end, like a [`Simulation`](super::Simulation) with RK4 and without audit. Events do not happen.
 ///
 /// A crane that leaves the bound of the settings ends with [`Stopped`], and the others continue. Returns one result per crane.
 ///

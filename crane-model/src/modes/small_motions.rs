@@ -201,7 +201,7 @@ fn skew(matrix: &DMatrix<f64>) -> DMatrix<f64> {
 impl dyn DynCrane + '_ {
     /// `A`, `K = ∂(A a − e − f)/∂q` and `D = −∂(e + f)/∂v` at time t, pose q, rates v and accelerations a:
     /// `A δq̈ + D δq̇ + K δq = 0`. K and D contain centrifugal and gyroscopic terms and need not be symmetric. Coordinates that
-    /// rigid drives prescribe oscillate separately at 1 rad/s, as in [`linearise`](DynCrane::linearise). NaN for a crane without derivatives of the dynamics.
+    /// rigid drives prescribe oscillate separately at 1 rad/s, as in [`linearise`](crate::dyn_crane::Functions::linearise). NaN for a crane without derivatives of the dynamics.
     pub fn linearise_motion(&self, t: f64, [q, v, a]: [&[f64]; 3]) -> [DMatrix<f64>; 3] {
         let size = self.size();
         let mut mass = self.mass_matrix_at(q);
