@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crane_model::dynamics::{InitialState, Method, Sample, Settings, Simulation, Watch};
-use crane_model::{CoordinateKind, CoordinateRole, CraneModel, statics};
+use crane_model::{CoordinateKind, CoordinateRole, CraneModel};
+
+use crate::states::guess;
 
 /// Before any drive moves, s.
 const BEGIN: f64 = -3.0;
@@ -31,11 +33,7 @@ pub fn plan<const N: usize>(model: &impl CraneModel<N>) -> Plan {
         coordinate.role == CoordinateRole::Passive && coordinate.kind == CoordinateKind::Rotation
     };
     let of = |(index, guess): (usize, &f64)| if is_passive(index) { guess + ASIDE } else { *guess };
-    Plan {
-        start: statics::Problem::new(model).guess().iter().enumerate().map(of).collect(),
-        duration: 2.0,
-        output: 0.05,
-    }
+    Plan { start: guess(model).iter().enumerate().map(of).collect(), duration: 2.0, output: 0.05 }
 }
 
 /// The shortest time of some runs by a method, s, and the coordinates at every result. `accuracy`: the step of a method with constant steps, s, or the

@@ -1,8 +1,9 @@
 //! The states at which everything is timed and compared.
 
+use crane_model::dyn_crane::{DynCrane, Instance};
 use crane_model::nalgebra::SVector;
 use crane_model::rt::lanes::f64x8;
-use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Description, statics};
+use crane_model::{CoordinateKind, CoordinateRole, CraneModel, Description};
 use fastrand::Rng;
 
 /// Enough that neither registers nor the branch predictor remember a result, and few enough that all stay in the L1 cache.
@@ -20,10 +21,16 @@ pub struct State<const N: usize> {
     pub v: SVector<f64, N>,
 }
 
+/// The guess of a crane, which has no statics.
+pub fn guess<const N: usize>(model: &impl CraneModel<N>) -> Vec<f64> {
+    let on_slices: &dyn DynCrane = &Instance::<N, _>(model.clone());
+    on_slices.guess()
+}
+
 /// Random states about the guess of the spec, before the drives begin to move: other libraries then see springs.
 #[must_use]
 pub fn near_guess<const N: usize>(model: &impl CraneModel<N>) -> Vec<State<N>> {
-    let (crane, guess) = (model.description(), statics::Problem::new(model).guess());
+    let (crane, guess) = (model.description(), guess(model));
     let mut rng = Rng::with_seed(SEED);
     let mut symmetric = |scale: f64| scale * (2.0 * rng.f64() - 1.0);
     (0..COUNT)
