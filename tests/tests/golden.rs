@@ -10,6 +10,8 @@ use crane_codegen::build;
 use crane_codegen::chain::Analyses;
 use crane_codegen::compile;
 use crane_codegen::explain;
+use crane_codegen::program::FunctionId;
+use crane_model::dyn_crane::{Arguments, Derived, Functions, Instance};
 use crane_tests::workspace;
 
 mod compiled {
@@ -23,6 +25,28 @@ mod compiled {
     pub mod knuckle_boom {
         include!("../golden/knuckle_boom.rs");
     }
+}
+
+/// The double pendulum has dynamics alone: its boxed crane answers for functions of other parts that it does not have them, and they are NaN; what it lacks
+/// a component for is zero.
+#[test]
+fn a_crane_says_which_functions_it_does_not_have() {
+    use compiled::double_pendulum::{Crane, N};
+    let crane = Instance::<N, _>(Crane::default());
+    let arguments = Arguments { q: &[0.3, -0.2], v: &[0.1, 0.2], positions: &[0.0; N], ..Arguments::none() };
+    let call = |id: FunctionId, count: usize| {
+        let mut results = vec![1.0; count];
+        (crane.call(id, &arguments, &mut results), results)
+    };
+    for (id, count) in
+        [(FunctionId::StaticResidual, N), (FunctionId::Linearise, 3 * N * N), (FunctionId::PointJacobians, 3 * N)]
+    {
+        let (derived, results) = call(id, count);
+        assert!(derived == Derived::No && results.iter().all(|number| number.is_nan()), "{}: {results:?}", id.name());
+    }
+    assert_eq!(call(FunctionId::SupportForces, N), (Derived::Yes, vec![0.0; N]));
+    let (derived, mass) = call(FunctionId::MassMatrix, N * N);
+    assert!(derived == Derived::Yes && mass[0] > mass[3] && mass[1].to_bits() == mass[2].to_bits(), "{mass:?}");
 }
 
 fn assert_golden(path: &Path, actual: &str) {

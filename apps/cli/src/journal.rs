@@ -30,7 +30,7 @@ pub struct Request<'a> {
 /// Version of the program, spec, parameters and inputs of a crane: the part that all requests share.
 pub fn identity(crane: &dyn DynCrane) -> String {
     let description = crane.description();
-    let parameters: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
+    let parameters: Vec<f64> = crane.parameter_values();
     let inputs: Vec<Option<f64>> = (0..description.inputs.len()).map(|index| crane.input(index)).collect();
     format!("{} {} {parameters:?} {inputs:?}", env!("CARGO_PKG_VERSION"), description.spec_hash)
 }

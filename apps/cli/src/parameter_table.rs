@@ -84,7 +84,7 @@ impl ParameterTable {
 
     /// All live parameters of every row: those without a column are as in `base`.
     pub fn parameters(&self, base: &dyn DynCrane) -> Vec<Vec<f64>> {
-        let defaults: Vec<f64> = (0..base.description().parameters.len()).map(|index| base.parameter(index)).collect();
+        let defaults: Vec<f64> = base.parameter_values();
         let row = |row: &Vec<f64>| {
             let mut values = defaults.clone();
             for (&index, &value) in self.columns.iter().zip(row) {

@@ -422,7 +422,7 @@ impl Parameters {
 
 /// Sets live parameters, by their indices in the description, all at once.
 pub fn set_parameters(crane: &mut dyn DynCrane, settings: &[(usize, f64)]) -> Outcome<()> {
-    let mut values: Vec<f64> = (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
+    let mut values: Vec<f64> = crane.parameter_values();
     for &(index, value) in settings {
         values[index] = value;
     }

@@ -54,8 +54,7 @@ pub fn open(folder: &Path, make: Make) -> Result<Opened, String> {
             "{SPEC} ({spec_hash}) is not the spec from which this library was compiled ({compiled_from}): change the spec before the export, and export the unit again"
         ));
     }
-    let mut parameters: Vec<f64> =
-        (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
+    let mut parameters: Vec<f64> = crane.parameter_values();
     let bytes = read_resource(folder, PARAMETERS)?;
     let mut known = vec![false; parameters.len()];
     for line in String::from_utf8_lossy(&bytes).lines() {

@@ -240,7 +240,7 @@ impl Motions {
         let of_row = |row: usize| {
             let now = self.row(row);
             let crane = now.motion.crane();
-            (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect::<Vec<f64>>()
+            crane.parameter_values()
         };
         let rows: Vec<Vec<f64>> = (0..self.rows.len()).map(of_row).collect();
         let width = rows.first().map_or(0, Vec::len);

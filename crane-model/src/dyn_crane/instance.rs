@@ -30,6 +30,12 @@ fn vector<T: nalgebra::Scalar + Copy, const N: usize>(slice: &[T]) -> SVector<T,
     SVector::from(<[T; N]>::try_from(slice).expect("as many numbers as coordinates"))
 }
 
+/// No results.
+fn absent(out: &mut [f64]) -> Derived {
+    out.fill(f64::NAN);
+    Derived::No
+}
+
 impl<const N: usize, C: CraneModel<N>> Instance<N, C> {
     /// Functions whose methods are written by hand.
     fn call_other(&self, id: FunctionId, at: &Arguments<'_>, out: &mut [f64]) -> Derived {
@@ -44,10 +50,7 @@ impl<const N: usize, C: CraneModel<N>> Instance<N, C> {
                 self.0.forward_dynamics_derivatives(at.t, &vector(at.q), &vector(at.v), out.as_chunks_mut().0);
             }
             // They fill types of their own, see `prescribe` and `system`.
-            _ => {
-                out.fill(f64::NAN);
-                return Derived::No;
-            }
+            _ => return absent(out),
         }
         Derived::Yes
     }
@@ -55,11 +58,7 @@ impl<const N: usize, C: CraneModel<N>> Instance<N, C> {
 
 impl<const N: usize, C: CraneModel<N>> Functions for Instance<N, C> {
     fn call(&self, id: FunctionId, at: &Arguments<'_>, out: &mut [f64]) -> Derived {
-        if !id.part().is_in(C::PARTS) {
-            out.fill(f64::NAN);
-            return Derived::No;
-        }
-        quantities! { @(call_sized) [id (self.0, at, out, return self.call_other(id, at, out))] }
+        quantities! { @(call_sized) [id { return absent(out) } (self.0, at, out, return self.call_other(id, at, out))] }
         Derived::Yes
     }
 

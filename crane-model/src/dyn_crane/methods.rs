@@ -46,17 +46,18 @@ macro_rules! slice_method {
     };
 }
 
-/// Calls the function of an identifier of the crane with the size in its type.
+/// Calls the function of an identifier of the crane with the size in its type; `absent`: for one of a part that the crane `C` does not have.
 macro_rules! call_sized {
-    ($id:ident $call:tt $($part:ident { $(
+    ($id:ident $absent:block $call:tt $($part:ident { $(
         $(#[doc = $remark:literal])*
         $row:ident = $name:ident($($argument:ident),*) -> $result:tt $rule:ident $doc:literal $equation:literal
         $(python($($python:tt)*))?;
     )* })*) => {
         match $id {
-            $($(FunctionId::$row => {
+            $($(FunctionId::$row if const { Part::$part.is_in(C::PARTS) } => {
                 call_sized_row! { $result $call $name($($argument),*) }
             })*)*
+            _ => $absent
         }
     };
 }

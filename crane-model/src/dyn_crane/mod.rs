@@ -209,6 +209,11 @@ pub trait DynCrane: Functions {
     /// Value of a live parameter, by its index in the description.
     fn parameter(&self, index: usize) -> f64;
 
+    /// Values of all live parameters, in the order of the description.
+    fn parameter_values(&self) -> Vec<f64> {
+        (0..self.description().parameters.len()).map(|index| self.parameter(index)).collect()
+    }
+
     /// Value to which an input is set, by its index in the description; `None` while it follows its spec.
     fn input(&self, index: usize) -> Option<f64>;
 

@@ -98,7 +98,7 @@ pub fn after<'e>(
     crane: &dyn DynCrane,
     events: impl IntoIterator<Item = &'e EventInfo>,
 ) -> Result<Box<dyn DynCrane>, ParameterError> {
-    let mut values: Vec<f64> = (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
+    let mut values: Vec<f64> = crane.parameter_values();
     for &(index, value) in events.into_iter().flat_map(|event| event.changes.iter()) {
         values[index] = value;
     }

@@ -92,8 +92,7 @@ impl Axes {
 
     /// Parameters of a crane for a combination, in the order of the description.
     pub fn parameters(&self, crane: &dyn DynCrane, pose: usize) -> Vec<f64> {
-        let mut parameters: Vec<f64> =
-            (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
+        let mut parameters: Vec<f64> = crane.parameter_values();
         for (axis, value) in self.0.iter().zip(self.values(pose)) {
             if let Varied::Parameter(index) = axis.varied {
                 parameters[index] = value;

@@ -146,12 +146,8 @@ impl SmallMotions {
     }
 
     /// `−A⁻¹K` and `−A⁻¹D`.
-    ///
-    /// # Errors
-    /// As [`factors`](Self::factors).
-    pub(super) fn state_blocks(&self) -> Result<[DMatrix<f64>; 2], NoModes> {
-        let factors = self.factors()?;
-        Ok([&self.stiffness, &self.damping].map(|matrix| -factors.solve(matrix)))
+    pub(super) fn state_blocks(&self, factors: &Cholesky<f64, Dyn>) -> [DMatrix<f64>; 2] {
+        [&self.stiffness, &self.damping].map(|matrix| -factors.solve(matrix))
     }
 
     /// State matrix `[[0, I], [−A⁻¹K, −A⁻¹D]]` of `d/dt [δq; δq̇]`, 2N × 2N.
@@ -160,7 +156,7 @@ impl SmallMotions {
     /// The mass matrix is not positive definite, or a coefficient is not a finite number.
     pub fn state_matrix(&self) -> Result<DMatrix<f64>, NoModes> {
         let n = self.mass.nrows();
-        let [stiffness, damping] = self.state_blocks()?;
+        let [stiffness, damping] = self.state_blocks(&self.factors()?);
         let mut state = DMatrix::zeros(2 * n, 2 * n);
         state.view_mut((0, n), (n, n)).fill_with_identity();
         state.view_mut((n, 0), (n, n)).copy_from(&stiffness);

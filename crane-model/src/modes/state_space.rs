@@ -45,8 +45,9 @@ impl StateSpace {
                 }
             }
         }
-        let [stiffness, damping] = motions.state_blocks()?;
-        let pushed = motions.factors()?.solve(&pushes);
+        let factors = motions.factors()?;
+        let [stiffness, damping] = motions.state_blocks(&factors);
+        let pushed = factors.solve(&pushes);
         let mut matrix = DMatrix::zeros(2 * n + m, 2 * n + m);
         matrix.view_mut((0, n), (n, n)).fill_with_identity();
         matrix.view_mut((n, 0), (n, n)).copy_from(&stiffness);

@@ -128,7 +128,7 @@ mod tests {
                     values.iter().enumerate().map(|(i, value)| Dual8::along(*value, along(i))).collect()
                 };
                 let (q, v, a) = (numbers(q, block == 0), numbers(v, block == 1), numbers(a, false));
-                for (row, result) in of_block.chunks_exact_mut(n).zip(evaluation.at(&Arguments {
+                for (row, result) in of_block.chunks_exact_mut(n).zip(evaluation.results_at(&Arguments {
                     t: Dual8::splat(t),
                     q: &q,
                     v: &v,

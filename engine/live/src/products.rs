@@ -230,7 +230,7 @@ impl PushForwardOfLarge {
             self.parameters = rests.then(|| parameters.to_vec());
         }
         self.evaluation.set_inputs(inputs);
-        let results = self.evaluation.at(&Arguments { t, q: &q, v: &v, a: &a, ..Arguments::none() });
+        let results = self.evaluation.results_at(&Arguments { t, q: &q, v: &v, a: &a, ..Arguments::none() });
         out.iter_mut().zip(results).for_each(|(out, number)| *out = number.slope(0));
     }
 }

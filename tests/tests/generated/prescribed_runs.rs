@@ -97,7 +97,7 @@ fn ensembles_follow_prescribed_motions() {
     for (crane, prescribed) in cranes().into_iter().filter(|(crane, _)| !crane.description().has_force_states()) {
         let settings = Settings { audit: false, duration: 0.1, ..settings(&*crane, Method::Rk4) };
         let start = InitialState::at_rest(crane.guess());
-        let parameters = (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect();
+        let parameters = crane.parameter_values();
         let mut alone = Vec::new();
         let observe = &mut |sample: &crane_model::dynamics::Sample<'_>| {
             alone.push(sample.q.to_vec());

@@ -146,7 +146,7 @@ impl<'a> PosedCrane<'a> {
         let limits = Limits { tipping: None, utilisation: None, ..Limits::usual(crane.description()) };
         let beyond = Condition::at(crane, q.clone(), &positions).exceeded(crane, &limits);
         let exceeded = beyond.iter().map(|margin| (margin.limit.kind(), margin.limit.location(crane))).collect();
-        let mut values: Vec<_> = self.reach.radius_and_height(&q, &parameters_of(crane)).map(Some).into();
+        let mut values: Vec<_> = self.reach.radius_and_height(&q, &crane.parameter_values()).map(Some).into();
         match self.wanted {
             Quantities::Statics => values.extend(self.of_statics(crane, &q)?),
             Quantities::Strength => values.extend(of_strength(crane, q)),
@@ -156,10 +156,10 @@ impl<'a> PosedCrane<'a> {
     }
 
     fn of_statics(&self, crane: &dyn DynCrane, q: &[f64]) -> Outcome<Vec<Option<f64>>> {
-        let position = self.reach.position(q, &parameters_of(crane));
+        let position = self.reach.position(q, &crane.parameter_values());
         let moved = |other: &dyn DynCrane, reach: &Reach| {
             let rest = other.equilibrium(&statics::Settings::default());
-            rest.is_stable().then(|| (position - reach.position(&rest.q, &parameters_of(other))).norm())
+            rest.is_stable().then(|| (position - reach.position(&rest.q, &other.parameter_values())).norm())
         };
         let mut values = Vec::new();
         if let Some((reach, rigid)) = &self.rigid {
@@ -226,11 +226,6 @@ impl<'a> PosedCrane<'a> {
         };
         self.axes.0.iter().map(|axis| of(axis.varied)).collect()
     }
-}
-
-/// Values of the live parameters of a crane.
-fn parameters_of(crane: &dyn DynCrane) -> Vec<f64> {
-    (0..crane.description().parameters.len()).map(|index| crane.parameter(index)).collect()
 }
 
 /// Utilisation, equivalent stress and tipping margin.

@@ -483,7 +483,7 @@ impl Instance {
         self.moment = Some(Moment { t: sample.t, q: sample.q.to_vec(), v: sample.v.to_vec(), x: sample.x.to_vec() });
         if self.events() > 0 {
             self.marks = Some(motion.marks());
-            let values = (0..self.parameters.len()).map(|index| motion.crane().parameter(index)).collect::<Vec<f64>>();
+            let values = motion.crane().parameter_values();
             if values != self.parameters {
                 self.crane.set_parameters(&values).map_err(Fault::error)?;
                 self.live.set_parameters(&values).map_err(Fault::error)?;

@@ -110,7 +110,7 @@ pub fn add_events(report: &mut Report, cranes: &[(&str, &dyn DynCrane, &Table)])
     let mut grid = Grid::new("events", "Events of the run", &headers);
     for ((label, crane, _), events) in cranes.iter().zip(&all).take(if alike { 1 } else { cranes.len() }) {
         let description = crane.description();
-        let mut values: Vec<f64> = (0..description.parameters.len()).map(|index| crane.parameter(index)).collect();
+        let mut values: Vec<f64> = crane.parameter_values();
         for (time, event) in events {
             for &(index, value) in &event.changes {
                 let parameter = &description.parameters[index];

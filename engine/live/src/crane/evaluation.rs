@@ -31,7 +31,7 @@ pub struct Evaluation<T: Number> {
     forces: Vec<T>,
     /// The crane's inputs.
     inputs: Vec<T>,
-    /// The results of [`at`](Self::at).
+    /// The results of [`results_at`](Self::results_at).
     results: Vec<T>,
     /// The number of results.
     width: usize,
@@ -158,7 +158,7 @@ impl<T: Number<Columns: Columns<Lane = T>>> Evaluation<T> {
     }
 
     /// Its results at a state.
-    pub fn at(&mut self, at: &Arguments<'_, T>) -> &[T] {
+    pub fn results_at(&mut self, at: &Arguments<'_, T>) -> &[T] {
         let mut results = std::mem::take(&mut self.results);
         results.resize(self.width, T::splat(0.0));
         self.call(at, &mut results);

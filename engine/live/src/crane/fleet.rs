@@ -11,10 +11,9 @@ use wide::bytemuck::{cast_slice, cast_slice_mut};
 
 use super::LiveCrane;
 use super::evaluation::Evaluation;
-use super::systems::Ready;
+use super::systems::LiveSystem;
 use crate::inputs::slots_of;
-use crate::machine::{Batch, Environment};
-use crate::routine::Routine;
+use crate::machine::Batch;
 
 /// Number of cranes.
 const CRANES: usize = <f64x8 as Batch>::LANES;
@@ -176,52 +175,30 @@ impl Functions for Fleet {
     }
 
     fn system(&self) -> Box<dyn DynSystem + '_> {
-        let ready = |id: FunctionId| {
-            let routine = self.crane.library.routine(id)?;
-            Some((routine, routine.machine(&self.parameters)))
-        };
-        let factors = self.crane.library.routine(FunctionId::Factorise).map_or(0, Routine::results);
-        Box::new(FleetSystem {
-            factorise: ready(FunctionId::Factorise),
-            solve: ready(FunctionId::Solve),
-            factors: vec![f64x8::splat(f64::NAN); factors],
-            given: Default::default(),
-            solution: vec![],
-            version: 1,
-        })
+        let system = LiveSystem::new(&self.crane.library, &self.parameters);
+        Box::new(FleetSystem { system, given: Default::default(), solution: vec![] })
     }
 }
 
 /// Linear systems of all cranes.
 struct FleetSystem<'a> {
-    factorise: Ready<'a, f64x8>,
-    solve: Ready<'a, f64x8>,
-    factors: Vec<f64x8>,
+    system: LiveSystem<'a, f64x8>,
     given: [Vec<f64x8>; 3],
     solution: Vec<f64x8>,
-    /// The number of the factors.
-    version: u64,
 }
 
 impl DynSystem for FleetSystem<'_> {
     fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
-        if let Some((routine, machine)) = &mut self.factorise {
-            self.given.iter_mut().zip([q, added_inertia, base]).for_each(|(vectors, numbers)| take(numbers, vectors));
-            let [q, added_inertia, base] = &self.given;
-            let at = Arguments { q, ..Arguments::none() };
-            routine.run(machine, &Environment { added_inertia, base, ..at.into() }, &mut self.factors);
-            self.version += 1;
-        }
+        self.given.iter_mut().zip([q, added_inertia, base]).for_each(|(vectors, numbers)| take(numbers, vectors));
+        let [q, added_inertia, base] = &self.given;
+        self.system.factorise(q, added_inertia, base);
     }
 
     fn solve(&mut self, r: &[f64], out: &mut [f64]) {
-        if let Some((routine, machine)) = &mut self.solve {
-            let Self { factors, version, given: [given, ..], solution, .. } = self;
-            take(r, given);
-            solution.resize(given.len(), f64x8::splat(0.0));
-            let at = Arguments { r: given, ..Arguments::none() };
-            routine.run(machine, &Environment { factors, version: *version, ..at.into() }, solution);
-            out.copy_from_slice(cast_slice(solution));
-        }
+        let Self { system, given: [given, ..], solution } = self;
+        take(r, given);
+        solution.resize(given.len(), f64x8::splat(0.0));
+        system.solve(given, solution);
+        out.copy_from_slice(cast_slice(solution));
     }
 }

@@ -19,7 +19,7 @@ pub fn loop_stiffness(crane: &LiveCrane, q: &[f64], multipliers: &[f64], out: &m
     let mut jacobians = Evaluation::<Dual8>::new(crane, FunctionId::LoopJacobians);
     out.fill(0.0);
     for first in (0..n).step_by(DIRECTIONS) {
-        let rows = jacobians.at(&Arguments { q: &numbers(q, first), ..Arguments::none() });
+        let rows = jacobians.results_at(&Arguments { q: &numbers(q, first), ..Arguments::none() });
         for (multiplier, row) in multipliers.iter().zip(rows.chunks_exact(n)) {
             for (direction, column) in out.chunks_exact_mut(n).skip(first).take(DIRECTIONS).enumerate() {
                 column.iter_mut().zip(row).for_each(|(sum, entry)| *sum += multiplier * entry.slope(direction));

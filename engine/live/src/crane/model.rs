@@ -27,7 +27,7 @@ impl Functions for LiveCrane {
 
     fn prescribe(&self, t: f64, q: &mut [f64], v: &mut [f64]) {
         self.with_evaluation(FunctionId::PrescribedMotions, |motions| {
-            let motions = motions.at(&Arguments { t, ..Arguments::none() });
+            let motions = motions.results_at(&Arguments { t, ..Arguments::none() });
             for (drive, [position, rate]) in self.chain().rigid_drives().zip(motions.as_chunks().0) {
                 (q[drive.coordinate.0], v[drive.coordinate.0]) = (*position, *rate);
             }
@@ -35,7 +35,7 @@ impl Functions for LiveCrane {
     }
 
     fn system(&self) -> Box<dyn DynSystem + '_> {
-        Box::new(LiveSystem::new(self))
+        Box::new(LiveSystem::new(&self.library, &self.parameters))
     }
 }
 

@@ -6,40 +6,40 @@ use crane_model::dyn_crane::{Arguments, DynBlock, DynSystem};
 use crane_model::rt::lanes::f64x8;
 
 use super::LiveCrane;
-use crate::machine::{Environment, Machine};
+use crate::library::Library;
+use crate::machine::{Environment, Machine, Number};
 use crate::routine::Routine;
 
 /// A function and the machine for its calls.
-pub(super) type Ready<'a, T> = Option<(&'a Routine, Machine<T>)>;
+type Ready<'a, T> = Option<(&'a Routine, Machine<T>)>;
 
-/// Linear systems, with the factors of the last one.
-pub(super) struct LiveSystem<'a> {
-    factorise: Ready<'a, f64>,
-    solve: Ready<'a, f64>,
-    factors: Vec<f64>,
+/// Linear systems of one crane, or of eight, with the factors of the last one.
+pub(super) struct LiveSystem<'a, T> {
+    factorise: Ready<'a, T>,
+    solve: Ready<'a, T>,
+    factors: Vec<T>,
     /// Their number.
     version: u64,
 }
 
-impl<'a> LiveSystem<'a> {
-    /// Of a crane.
-    pub fn new(crane: &'a LiveCrane) -> Self {
+impl<'a, T: Number> LiveSystem<'a, T> {
+    /// With these live parameters.
+    pub fn new(library: &'a Library, parameters: &[T]) -> Self {
         let ready = |id: FunctionId| {
-            let routine = crane.library.routine(id)?;
-            Some((routine, routine.machine(&crane.parameters)))
+            let routine = library.routine(id)?;
+            Some((routine, routine.machine(parameters)))
         };
-        let factors = crane.library.routine(FunctionId::Factorise).map_or(0, Routine::results);
+        let factors = library.routine(FunctionId::Factorise).map_or(0, Routine::results);
         Self {
             factorise: ready(FunctionId::Factorise),
             solve: ready(FunctionId::Solve),
-            factors: vec![f64::NAN; factors],
+            factors: vec![T::splat(f64::NAN); factors],
             version: 1,
         }
     }
-}
 
-impl DynSystem for LiveSystem<'_> {
-    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
+    /// As [`DynSystem::factorise`].
+    pub fn factorise(&mut self, q: &[T], added_inertia: &[T], base: &[T]) {
         if let Some((routine, machine)) = &mut self.factorise {
             let at = Arguments { q, ..Arguments::none() };
             routine.run(machine, &Environment { added_inertia, base, ..at.into() }, &mut self.factors);
@@ -47,12 +47,23 @@ impl DynSystem for LiveSystem<'_> {
         }
     }
 
-    fn solve(&mut self, r: &[f64], out: &mut [f64]) {
+    /// As [`DynSystem::solve`].
+    pub fn solve(&mut self, r: &[T], out: &mut [T]) {
         if let Some((routine, machine)) = &mut self.solve {
             let Self { factors, version, .. } = self;
             let at = Arguments { r, ..Arguments::none() };
             routine.run(machine, &Environment { factors, version: *version, ..at.into() }, out);
         }
+    }
+}
+
+impl DynSystem for LiveSystem<'_, f64> {
+    fn factorise(&mut self, q: &[f64], added_inertia: &[f64], base: &[f64]) {
+        LiveSystem::factorise(self, q, added_inertia, base);
+    }
+
+    fn solve(&mut self, r: &[f64], out: &mut [f64]) {
+        LiveSystem::solve(self, r, out);
     }
 }
 

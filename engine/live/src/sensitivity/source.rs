@@ -58,7 +58,7 @@ impl<'a> Source<'a> {
             evaluation.set_inputs(inputs.iter().copied());
             evaluation
         });
-        evaluation.at(&Arguments { q, v, ..Arguments::none() }).to_vec()
+        evaluation.results_at(&Arguments { q, v, ..Arguments::none() }).to_vec()
     }
 
     /// `Jᵀ λ` from the rows of loop joints and what they transmit.

@@ -287,7 +287,7 @@ impl Chunk {
     /// J with its slopes.
     fn jacobian(&mut self, q: &[Dual8]) -> Vec<Dual8> {
         let Some([_, jacobians]) = &mut self.loops else { return Vec::new() };
-        jacobians.at(&Arguments { q, ..Arguments::none() }).to_vec()
+        jacobians.results_at(&Arguments { q, ..Arguments::none() }).to_vec()
     }
 }
 
@@ -351,7 +351,7 @@ impl Numbers for Directions<'_> {
                 let mut evaluation = Evaluation::<Dual8>::new(&self.crane, id);
                 evaluation.set_parameters(&chunk.parameters);
                 evaluation.set_inputs(chunk.inputs.iter().copied());
-                for time in evaluation.at(&Arguments::none()) {
+                for time in evaluation.results_at(&Arguments::none()) {
                     if number == 0 {
                         all.push((time.value(), Vec::new()));
                     }
@@ -380,8 +380,13 @@ impl Slopes for Directions<'_> {
             let along = &along[first..][..chunk.count];
             let (q, v, a) = (moved(at.q, 0, along), moved(at.v, n, along), constants(at.a));
             let rows = chunk.jacobian(&q);
-            let residual =
-                chunk.residual.at(&Arguments { t: Dual8::splat(at.t), q: &q, v: &v, a: &a, ..Arguments::none() });
+            let residual = chunk.residual.results_at(&Arguments {
+                t: Dual8::splat(at.t),
+                q: &q,
+                v: &v,
+                a: &a,
+                ..Arguments::none()
+            });
             for (direction, out) in out[first..].iter_mut().take(chunk.count).enumerate() {
                 for (out, number) in out.iter_mut().zip(residual) {
                     *out = number.slope(direction);
@@ -401,7 +406,7 @@ impl Slopes for Directions<'_> {
             let (q, v) = (moved(at.q, 0, along), moved(at.v, n, along));
             let rows = chunk.jacobian(&q);
             let Some([states, _]) = &mut chunk.loops else { continue };
-            let states = states.at(&Arguments { t: Dual8::splat(at.t), q: &q, v: &v, ..Arguments::none() });
+            let states = states.results_at(&Arguments { t: Dual8::splat(at.t), q: &q, v: &v, ..Arguments::none() });
             for (direction, out) in out[first..].iter_mut().take(chunk.count).enumerate() {
                 let equations = states.chunks_exact(3).zip(rows.chunks_exact(n.max(1)));
                 for (out, (state, row)) in out.iter_mut().zip(equations) {
@@ -423,8 +428,8 @@ impl Slopes for Directions<'_> {
             let (q, v) = (moved(at.q, 0, along), moved(at.v, n, along));
             let pair = |states: &[Dual8], direction: usize| [0, 1].map(|k| states[k].slope(direction));
             let (states, jacobians) = (
-                oil.states.at(&Arguments { t, q: &q, v: &v, ..Arguments::none() }),
-                oil.jacobians.at(&Arguments { t, q: &q, ..Arguments::none() }),
+                oil.states.results_at(&Arguments { t, q: &q, v: &v, ..Arguments::none() }),
+                oil.jacobians.results_at(&Arguments { t, q: &q, ..Arguments::none() }),
             );
             for (direction, out) in out.iter_mut().enumerate() {
                 let own = states.chunks_exact(3).zip(jacobians.chunks_exact(n.max(1)));
@@ -436,13 +441,13 @@ impl Slopes for Directions<'_> {
             if !oil.wants_more {
                 continue;
             }
-            let motions = motions.at(&Arguments { t, ..Arguments::none() });
+            let motions = motions.results_at(&Arguments { t, ..Arguments::none() });
             let [mut wanted_q, mut wanted_v] = [zeros.clone(), zeros.clone()];
             for (drive, coordinate) in &oil.driven {
                 (wanted_q[*coordinate], wanted_v[*coordinate]) = (motions[2 * drive], motions[2 * drive + 1]);
             }
-            let openings = oil.openings.at(&Arguments { t, ..Arguments::none() });
-            let wanted = oil.states.at(&Arguments { t, q: &wanted_q, v: &wanted_v, ..Arguments::none() });
+            let openings = oil.openings.results_at(&Arguments { t, ..Arguments::none() });
+            let wanted = oil.states.results_at(&Arguments { t, q: &wanted_q, v: &wanted_v, ..Arguments::none() });
             for (direction, out) in out.iter_mut().enumerate() {
                 for (out, (states, drive)) in out.iter_mut().zip(wanted.chunks_exact(3).zip(&oil.drives)) {
                     out.wanted = pair(states, direction);
@@ -460,7 +465,8 @@ impl Slopes for Directions<'_> {
             let along = &along[first..][..*count];
             let (q, v) = (moved(at.q, 0, along), moved(at.v, n, along));
             for (index, function) in feet.iter_mut().enumerate() {
-                let numbers = function.at(&Arguments { t: Dual8::splat(at.t), q: &q, v: &v, ..Arguments::none() });
+                let numbers =
+                    function.results_at(&Arguments { t: Dual8::splat(at.t), q: &q, v: &v, ..Arguments::none() });
                 for (direction, out) in out[first..].iter_mut().take(*count).enumerate() {
                     let slopes = in_order(out)[index].iter_mut().zip(numbers);
                     slopes.for_each(|(slope, number)| *slope = number.slope(direction));
@@ -475,7 +481,7 @@ impl Slopes for Directions<'_> {
             return any;
         }
         for (number, chunk) in self.chunks.iter_mut().enumerate() {
-            let motions = chunk.motions.at(&Arguments { t: Dual8::splat(t), ..Arguments::none() });
+            let motions = chunk.motions.results_at(&Arguments { t: Dual8::splat(t), ..Arguments::none() });
             for (direction, out) in out[number * DIRECTIONS..].iter_mut().take(chunk.count).enumerate() {
                 for (out, pair) in out.iter_mut().zip(motions.chunks_exact(2)) {
                     *out = [pair[0].slope(direction), pair[1].slope(direction)];
