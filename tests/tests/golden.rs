@@ -32,7 +32,7 @@ mod compiled {
 #[test]
 fn a_crane_says_which_functions_it_does_not_have() {
     use compiled::double_pendulum::{Crane, N};
-    let crane = Instance::<N, _>(Crane::default());
+    let crane = Instance::<N, _>(Crane);
     let arguments = Arguments { q: &[0.3, -0.2], v: &[0.1, 0.2], positions: &[0.0; N], ..Arguments::none() };
     let call = |id: FunctionId, count: usize| {
         let mut results = vec![1.0; count];
